@@ -18,6 +18,7 @@ from api.http.gate.faults import UnexpectedErrors
 from api.http.gate.refusals import Refusals
 from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.http.metrics import Metrics
+from api.http.page.routes import page_routes
 from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
     analysis,
@@ -43,9 +44,9 @@ from api.http.routes import (
     tasks,
     vehicle,
 )
-from api.http.static_page import page_routes
 from api.streaming import events_route as events
 from api.streaming import route as stream
+from api.streaming.first_frames import first_frames
 from api.streaming.stream_metrics import StreamCollector
 from api.streaming.stream_server import StreamServer
 from service.clock import Clock
@@ -151,7 +152,8 @@ def create_robot_app(
     show(app, supervisor, clock)
     state.metrics.registry.register(StreamCollector(state.stream_server))
     add_problem_handlers(app, supervisor.clock)
-    app.include_router(page_routes())
+    # The stream server is another one after the robot of a recording was replaced.
+    app.include_router(page_routes(lambda: first_frames(state.stream_server)))
     app.openapi = partial(describe, app)  # type: ignore[method-assign]
     return app
 

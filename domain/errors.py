@@ -39,6 +39,8 @@ from domain.lifecycle import LifecycleState, Transition
 
 _LONGEST_COMPARED = 64
 _MOST_COMPARED = 200
+MAX_NAMED = 5
+"""Blockers that a message names; a large robot may have a thousand, and `blockers` lists them."""
 MAX_SHOWN = 200
 """Characters of what somebody sent that a message repeats, so that answers stay short."""
 
@@ -259,7 +261,10 @@ class BlockedError(RefusedError):
     code = "BLOCKED"
 
     def __init__(self, part: str, blockers: Sequence[Blocker]) -> None:
-        super().__init__(f"{part} cannot be changed: {'; '.join(b.message for b in blockers)}")
+        named = "; ".join(blocker.message for blocker in blockers[:MAX_NAMED])
+        rest = len(blockers) - MAX_NAMED
+        more = f" (and {rest:,} more)" if rest > 0 else ""
+        super().__init__(f"{part} cannot be changed: {named}{more}")
         self.blockers = tuple(blockers)
 
 

@@ -17,8 +17,8 @@ from fastapi.responses import FileResponse, JSONResponse
 
 from api.documents.asyncapi import stream_document
 from api.http.gate.headers import CONTENT_SECURITY_POLICY
+from api.http.page.page_file import PageFile, answer_with
 from api.http.route_policy import Permission, policy
-from api.http.static_page import PageFile, answer_with
 
 router = APIRouter(include_in_schema=False)
 openapi_router = APIRouter(include_in_schema=False)

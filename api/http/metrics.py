@@ -10,6 +10,7 @@ from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
 from api.http.gate.refusals import COUNTED, Refusals
+from domain.reaction_terms import ReactionState
 from domain.snapshot import ChangeStatus, Severity, SystemState
 from domain.timebase import to_seconds
 from service.refused_readings import WAYS
@@ -58,25 +59,7 @@ class _RobotCollector(Collector):
             "state",
             ((str(state), float(state is view.state)) for state in SystemState),
         )
-        yield _gauge(
-            "pilothouse_error_active",
-            "1 for each active error",
-            "error",
-            ((error, 1.0) for error in view.errors),
-        )
-        yield _gauge(
-            "pilothouse_part_errors",
-            "Number of parts that have an error, by error",
-            "error",
-            ((error, float(count)) for error, count in core.parts_with_errors.items()),
-        )
-        on = Counter(view.severity for view in core.open_errors().values() if view.state.is_on)
-        yield _gauge(
-            "pilothouse_errors",
-            "Number of errors that are on, of the robot and of its parts, by severity",
-            "severity",
-            ((str(severity), float(on[severity])) for severity in Severity),
-        )
+        yield from self._problems()
         deviating = (name for name, part in core.parts().items() if not part.converged)
         yield _gauge(
             "pilothouse_part_deviates",
@@ -95,6 +78,35 @@ class _RobotCollector(Collector):
                 for name, signal in core.signals().items()
                 if signal.received_at is not None
             ),
+        )
+
+    def _problems(self) -> Iterator[Metric]:
+        core = self._supervisor.core
+        yield _gauge(
+            "pilothouse_error_active",
+            "1 for each active error",
+            "error",
+            ((error, 1.0) for error in core.system_state().errors),
+        )
+        yield _gauge(
+            "pilothouse_part_errors",
+            "Number of parts that have an error, by error",
+            "error",
+            ((error, float(count)) for error, count in core.parts_with_errors.items()),
+        )
+        on = Counter(view.severity for view in core.open_errors().values() if view.state.is_on)
+        yield _gauge(
+            "pilothouse_errors",
+            "Number of errors that are on, of the robot and of its parts, by severity",
+            "severity",
+            ((str(severity), float(on[severity])) for severity in Severity),
+        )
+        reactions = Counter(view.state for view in core.reactions().values())
+        yield _gauge(
+            "pilothouse_reactions",
+            "Number of reactions, by how they stand",
+            "state",
+            ((str(state), float(reactions[state])) for state in ReactionState),
         )
 
     def _driving(self) -> Iterator[Metric]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TypeAlias, TypeVar
 
 from api.distribution import installed_version
+from api.http.page.assembled_page import assembled_page
 from api.http.problems import problem_of
 from api.http.schemas.base import timestamp
 from api.http.schemas.stream import GapJson, HelloJson, ReplayJson
@@ -62,6 +63,7 @@ class StreamEncoder:
             topics=[topic for topic in TOPICS if topic in topics],
             period_s=to_seconds(PERIOD),
             version=installed_version(),
+            page_version=assembled_page().version,
             replay=self.replay(),
         ).model_dump_json()
 

@@ -287,7 +287,7 @@ class Changes:
 
     def _set_out(self, change: Change, now: Instant) -> None:
         """Start the nodes that wait for no other; foresee the steps of those that do."""
-        free = [node for node in change.goals if not change.order.waits(node)]
+        free = change.order.free_of(change.goals)
         if len(free) < len(change.goals):
             for node in islice(change.goals, STARTS_AT_ONCE):
                 self._steps.foresee(change.pursue(node))

@@ -203,6 +203,16 @@ class Bound:
         """Return where the error of a number clears."""
         return float(self.threshold) if self.clear_threshold is None else self.clear_threshold
 
+    def facts(self) -> dict[str, Fact]:
+        """Return what is bad, and which error that is, as plain values."""
+        facts: dict[str, Fact] = {"error": self.error}
+        if self.comparison is Comparison.EQUAL:
+            facts["bad_value"] = self.threshold
+        else:
+            facts |= {"bad_side": str(self.comparison), "threshold": self.threshold}
+            facts["clear_threshold"] = self.clear_limit
+        return {**facts, "for_s": to_seconds(self.for_)}
+
     def badness(self, value: float) -> float:
         """Return by how much a number exceeds the threshold on its bad side; negative: good."""
         excess = value - float(self.threshold)
@@ -337,12 +347,9 @@ class SignalSettings:
 
     def facts(self) -> dict[str, Fact]:
         """Return the settings as plain values, with units in the names."""
-        facts: dict[str, Fact] = {}
+        facts: dict[str, Fact] = {"label": self.spec.label} if self.spec.label else {}
         for bound in self.bounds:
-            if self.spec.kind is SignalKind.NUMBER:
-                facts[_prefixed(bound, "threshold")] = bound.threshold
-                facts[_prefixed(bound, "clear_threshold")] = bound.clear_limit
-            facts[_prefixed(bound, "for_s")] = to_seconds(bound.for_)
+            facts |= {_prefixed(bound, name): fact for name, fact in bound.facts().items()}
         if self.monitor is not None:
             facts |= self.monitor.facts()
         facts |= {
@@ -350,7 +357,10 @@ class SignalSettings:
             "min_on_s": to_seconds(self.min_on),
             "clear_for_s": to_seconds(self.clear_for),
             "recovery": str(self.recovery),
+            "severity": str(self.severity),
         }
+        if self.part is not None:
+            facts["part"] = self.part
         if self.spec.kind is SignalKind.NUMBER:
             facts |= {"minimum": self.spec.minimum, "maximum": self.spec.maximum}
         elif self.spec.members:

@@ -37,9 +37,17 @@ class Order:
     @property
     def blocked(self) -> list[PartName]:
         """Return the nodes that wait for others; this looks at all of them."""
-        return (
-            [] if self._scope is None else [node for node in self._scope.nodes if self.waits(node)]
-        )
+        if self._scope is None or self._walk is None:
+            return []
+        begun = self._walk.begun
+        return [node for node in self._scope.nodes if node not in begun]
+
+    def free_of(self, nodes: Iterable[PartName]) -> list[PartName]:
+        """Return those nodes of the change that wait for none: at once, there may be many."""
+        if self._walk is None:
+            return list(nodes)
+        begun = self._walk.begun
+        return [node for node in nodes if node in begun]
 
     @property
     def stages(self) -> int:

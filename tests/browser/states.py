@@ -7,6 +7,7 @@ the picture of the README.
 
 import argparse
 import json
+import re
 import sys
 import tempfile
 import time
@@ -18,7 +19,12 @@ from typing import Any, Literal
 from playwright.sync_api import Browser, Page, WebSocketRoute, sync_playwright
 
 from tests.browser.earlier_runs import tell_earlier_runs
-from tests.browser.robots import guarded_robot, large_robot, troubled_robot
+from tests.browser.robots import (
+    guarded_robot,
+    large_robot,
+    many_signals_robot,
+    troubled_robot,
+)
 from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, free_port
 from tests.support.shared import PROJECT
 
@@ -29,7 +35,9 @@ LOST_MS = 3600
 
 Act = Callable[[Page, Service], None]
 MOBILE = PROJECT / "examples" / "mobile_robot"
-Robot = Literal["example", "troubled", "large", "guarded", "guarded_failing", "mobile"]
+Robot = Literal[
+    "example", "troubled", "large", "guarded", "guarded_failing", "mobile", "many_signals"
+]
 MANIPULATION = "/systems/mobile_manipulation"
 
 
@@ -43,6 +51,14 @@ def drive(service: Service, speed_mps: float = 2.8) -> None:
     waypoints = [{**pose, "x_m": pose["x_m"] + 2.0 * n, "yaw_rad": 0.0} for n in range(60)]
     post(service, "/tasks", {"waypoints": waypoints, "speed_mps": speed_mps})
     time.sleep(4)
+
+
+def show_part(page: Page, name: str) -> None:
+    """Show a part: on a phone it opens in place of the list."""
+    page.evaluate(
+        "(detail) => document.dispatchEvent(new CustomEvent('ph-select', { detail }))", name
+    )
+    page.locator("ph-part-panel h2").filter(has_text=name).wait_for()
 
 
 def running(_: Page, service: Service) -> None:
@@ -71,40 +87,45 @@ def stopped(_: Page, service: Service) -> None:
 
 def guarded(page: Page, service: Service) -> None:
     """A mode that cannot be entered, with all reasons, and a part that a dead node keeps away."""
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode", {"mode": "CAREFUL"})
     page.locator(".change-status").filter(has_text="failed").wait_for()
     service.request("PATCH", "/mock/battery_level", {"value": 0.21})
     service.request("PATCH", "/mock/temperature", {"value": 55})
     page.locator(".mode").filter(has_text="MANIPULATE").locator("summary").click()
-    page.locator("ph-why summary").click()
+    page.locator("ph-part-why summary").click()
     page.locator(".root").nth(1).scroll_into_view_if_needed()
 
 
 def plan(page: Page, service: Service) -> None:
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode?wait=15", {"mode": "CAREFUL"})
     post(service, f"{MANIPULATION}/state?wait=15", {"transition": "cleanup"})
-    page.get_by_label("Show the plan first").check()
-    page.get_by_role("button", name="MANIPULATE").click()
+    page.get_by_label("Plan first").check()
+    page.get_by_role("radio", name="MANIPULATE").click()
     page.get_by_role("button", name="Apply").scroll_into_view_if_needed()
 
 
 def displaced(page: Page, service: Service) -> None:
     """A fallback in place of the mode that was requested, and why."""
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode?wait=15", {"mode": "MANIPULATE"})
     service.request("PATCH", "/mock/temperature", {"value": 55})
-    page.locator("ph-why summary").click()
-    page.locator("ph-why .root").wait_for()
+    page.locator("ph-part-why summary").click()
+    page.locator("ph-part-why .root").wait_for()
 
 
 def rolled_back(page: Page, service: Service) -> None:
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE"})
     page.locator(".change-status").filter(has_text="rolled back").wait_for()
     page.locator(".change").scroll_into_view_if_needed()
 
 
 def waiting(page: Page, service: Service) -> None:
+    show_part(page, "mobile_manipulation")
     service.request("PATCH", "/mock/battery_level", {"value": 0.21})
-    page.get_by_text("battery_level is 0.21").wait_for()
+    page.get_by_text("Battery is 0.21").first.wait_for()
     post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE", "wait_for_s": 600})
     page.get_by_role("button", name="Stop waiting").scroll_into_view_if_needed()
 
@@ -145,12 +166,50 @@ def reacting(page: Page, service: Service) -> None:
 
 def reactions_seen(page: Page, service: Service) -> None:
     reacting(page, service)
-    page.locator("section.place-reactions").scroll_into_view_if_needed()
+    page.locator("ph-why ph-reaction-list").scroll_into_view_if_needed()
 
 
 def low_battery(_: Page, service: Service) -> None:
     service.request("PATCH", "/mock/battery_level", {"value": 0.314})
     service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+
+
+def show_signals(page: Page) -> None:
+    page.evaluate("document.dispatchEvent(new CustomEvent('ph-tab', { detail: 'signals' }))")
+
+
+def signals_pending(page: Page, service: Service) -> None:
+    """An error, one that is coming and one that is stale; the first is open to its history."""
+    show_signals(page)
+    service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+    service.request("PATCH", "/mock/signal_strength", {"publishing": False})
+    for value in (44, 49, 53, 58, 61):
+        service.request("PATCH", "/mock/temperature", {"value": value})
+        page.wait_for_timeout(1500)
+    row = page.locator("ph-signal-list:not([only]) ph-signal-row").filter(has_text="Temperature")
+    row.get_by_role("button").first.click()
+    row.get_by_role("button", name="1 min", exact=True).click()
+    row.locator(".chart-line[d^=M]").wait_for(state="attached")
+
+
+def signals_200(page: Page, service: Service) -> None:
+    show_signals(page)
+    for number in range(0, 200, 3):
+        value = 90 if number in (42, 141) else 30 + number % 40
+        post(service, f"/signals/motor_{number:03}_temperature", {"value": value})
+    page.wait_for_timeout(2500)
+
+
+def what_if(page: Page, service: Service) -> None:
+    """A low battery and a node that dies, on a copy of a robot that drives."""
+    drive(service)
+    page.evaluate("document.dispatchEvent(new CustomEvent('ph-what-if', { detail: {} }))")
+    drawer = page.locator("ph-what-if")
+    drawer.locator(".what-if-outcome").wait_for(timeout=30_000)
+    drawer.get_by_role("slider", name="Simulated Battery: set").fill("0.42")
+    drawer.get_by_label("After how many seconds").fill("12")
+    drawer.get_by_role("button", name="Add", exact=True).click()
+    drawer.get_by_text("is unreachable").first.wait_for()
 
 
 def no_contact(page: Page, service: Service) -> None:
@@ -182,16 +241,34 @@ def storage_alone(page: Page, service: Service) -> None:
     page.locator(".storage").wait_for()
 
 
-def rejected(page: Page, _: Service) -> None:
-    table = b"x;y;yaw\n0;0;0\n1;2;zwei\n"
+def open_form(page: Page) -> None:
+    page.get_by_role("button", name="New task").click()
+    page.get_by_role("button", name="Drive the example loop").wait_for()
+
+
+def new_task(page: Page, _: Service) -> None:
+    open_form(page)
+
+
+def choose(page: Page, table: bytes) -> None:
+    open_form(page)
     file: Any = {"name": "field.csv", "mimeType": "text/csv", "buffer": table}
     page.get_by_label("Choose a CSV").set_input_files(file)
+
+
+def task_preview(page: Page, service: Service) -> None:
+    choose(page, service.track_ahead(30, scans=True))
+    page.get_by_text("Preview of field.csv").wait_for()
+
+
+def rejected(page: Page, _: Service) -> None:
+    choose(page, b"x;y;yaw\n0;0;0\n1;2;zwei\n")
     page.locator("ph-task-form").get_by_role("alert").scroll_into_view_if_needed()
 
 
 def sending(page: Page, _: Service) -> None:
     page.route("**/mode", lambda _: None)
-    page.get_by_role("button", name="PERFORMANCE").click()
+    page.get_by_role("radio", name="PERFORMANCE").click()
 
 
 def far_down(page: Page, _: Service) -> None:
@@ -280,6 +357,11 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "reacting": ("mobile", reacting),
     "reactions": ("mobile", reactions_seen),
     "low_battery": ("example", low_battery),
+    "signals_pending": ("example", signals_pending),
+    "signals_200": ("many_signals", signals_200),
+    "what_if": ("example", what_if),
+    "new_task": ("example", new_task),
+    "task_preview": ("example", task_preview),
     "rejected": ("example", rejected),
     "sending": ("example", sending),
     "far_down": ("large", far_down),
@@ -302,6 +384,7 @@ def running_robot(kind: Robot) -> Iterator[Service]:
             "troubled": troubled_robot(folder),
             "large": large_robot(folder),
             "guarded": guarded_robot(folder),
+            "many_signals": many_signals_robot(folder),
             "mobile": (str(MOBILE / "model.yaml"), "--robot", str(MOBILE / "robot.yaml")),
             "guarded_failing": guarded_robot(folder, "fail"),
         }
@@ -325,7 +408,7 @@ def shoot(browser: Browser, folder: Path, name: str, screen: str) -> None:
             forced_colors="active" if name == "forced_colors" else "none",
         )
         page.goto(service.url)
-        page.locator("ph-part-panel h2").wait_for()
+        page.locator("ph-part-panel h2").filter(has_text=re.compile(".")).wait_for(state="attached")
         act(page, service)
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
@@ -340,6 +423,7 @@ def shoot_page(browser: Browser, file: Path) -> None:
         page = browser.new_page(viewport={"width": 1440, "height": 900})
         page.goto(service.url)
         post(service, "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
+        open_form(page)
         page.get_by_role("button", name="Drive the example loop").click()
         page.wait_for_timeout(100_000)
         page.screenshot(path=file)

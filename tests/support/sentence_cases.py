@@ -17,7 +17,7 @@ class Case:
 
     name: str
     word: str
-    level: Literal["calm", "attention", "error"]
+    level: Literal["calm", "held", "aborted", "attention", "error"]
     text: str
     more: tuple[str, ...] = ()
     members: Json = field(default_factory=dict)
@@ -89,8 +89,8 @@ CASES = (
     ),
     Case(
         "three holds",
-        "PAUSED",
-        "calm",
+        "HELD",
+        "held",
         "task t1 at 42 %, held by gate (the gate is shut), operator and loading",
         members=members(
             paused(), told.task("PAUSED"), (GATE, told.hold("operator"), told.hold("loading"))
@@ -98,8 +98,8 @@ CASES = (
     ),
     Case(
         "a task over a restart",
-        "PAUSED",
-        "calm",
+        "HELD",
+        "held",
         "task t1 at 42 %, held by restart and gate (the gate is shut)",
         members=members(
             paused(),
@@ -109,8 +109,8 @@ CASES = (
     ),
     Case(
         "five holds",
-        "PAUSED",
-        "calm",
+        "HELD",
+        "held",
         "task t1 at 42 %, held by a, b, c and 2 more",
         members=members(paused(), told.task("PAUSED"), tuple(told.hold(name) for name in "abcde")),
     ),
@@ -123,14 +123,14 @@ CASES = (
     ),
     Case(
         "a paused task whose vehicle is pushed",
-        "PAUSED",
+        "HELD",
         "attention",
         "the vehicle moves at 0.40 m/s; task t1 at 42 %, held by gate (the gate is shut)",
         members=members(paused(), told.task("PAUSED"), (GATE,), vehicle=moving(-0.4)),
     ),
     Case(
         "no pose",
-        "PAUSED",
+        "HELD",
         "attention",
         "task t1 at 42 %, held by vehicle (no pose of the vehicle for 0.3 s)",
         members=members(
@@ -221,8 +221,8 @@ CASES = (
     ),
     Case(
         "after an aborted task",
-        "IDLE",
-        "attention",
+        "ABORTED",
+        "aborted",
         ABORTED,
         members=members(
             task=told.task("ABORTED", reason="left the path", ended_at=told.AT),

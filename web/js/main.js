@@ -3,81 +3,94 @@
 import { request } from "/web/js/base/api.js";
 import { localNow, ServerClock } from "/web/js/base/clock.js";
 import { Connection } from "/web/js/base/connection.js";
+import { Latency } from "/web/js/base/latency.js";
+import { Pacer } from "/web/js/base/pacer.js";
+import { partCounts } from "/web/js/base/part_problems.js";
 import { PathWatch } from "/web/js/base/path_watch.js";
-import { robotSentence } from "/web/js/base/state_sentence.js";
 import { emptyState, fold } from "/web/js/base/store.js";
+import "/web/js/base/theme.js";
 import "/web/js/header/token_form.js";
+import "/web/js/header/version_notice.js";
 import "/web/js/base/pills.js";
 import "/web/js/header/replay_bar.js";
+import "/web/js/header/moment_bar.js";
 import "/web/js/base/hold_button.js";
-import "/web/js/header/acknowledge.js";
-import "/web/js/inspector/alarm_list.js";
-import "/web/js/inspector/reaction_list.js";
 import "/web/js/header/state_bar.js";
 import "/web/js/header/stop_button.js";
-import "/web/js/map/map.js";
+import "/web/js/header/stop_release.js";
+import "/web/js/header/notices.js";
+import "/web/js/header/menu.js";
+import "/web/js/header/tabs.js";
 import "/web/js/header/hold_list.js";
-import "/web/js/task/task_form.js";
-import "/web/js/task/task_panel.js";
-import "/web/js/parts/part_tree.js";
-import "/web/js/inspector/mode_switcher.js";
-import "/web/js/inspector/plan.js";
-import "/web/js/inspector/change.js";
-import "/web/js/inspector/why.js";
-import "/web/js/inspector/error_list.js";
-import "/web/js/inspector/part_panel.js";
-import "/web/js/what_if/mock_control.js";
-import "/web/js/signals/signal_list.js";
-import "/web/js/timeline/event_list.js";
+import { goTo, listen } from "/web/js/header/keys.js";
+import { showTitle } from "/web/js/header/title.js";
+import "/web/js/parts/part_list.js";
 
 const REDRAW_MS = 250;
 const MOCK_PAUSE_MS = 1000;
 /** So long after storage refused a request, a long press may do without it. */
 const REFUSED_MS = 30_000;
+/** Up to so many parts, and from so many on, the page is laid out differently. */
+const [FEW, MANY] = [6, 100];
 
 const clock = new ServerClock();
 const connection = new Connection(() =>
   state.epoch === null ? null : { after: state.lastEventId, epoch: state.epoch },
 );
+const latency = new Latency();
+const pacer = new Pacer(draw);
 const pathWatch = new PathWatch(take);
 const panel = document.querySelector("ph-part-panel");
 const map = document.querySelector("ph-map");
-const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
-const elements = document.querySelectorAll(
-  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
-    "ph-signal-list, ph-event-list",
-);
+const versionNotice = document.querySelector("ph-version-notice");
+const stopButton = document.querySelector("ph-stop-button");
+const elements = [
+  ...document.querySelectorAll(
+    "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
+      "ph-why, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
+      "ph-signal-list, ph-timeline, ph-what-if",
+  ),
+];
 let state = emptyState();
 let mock = {};
 let selected = null;
 let preview = null;
-let drawAsked = false;
 let mockAsked = false;
 let refusedAt = -Infinity;
 /** The moment to which the panels are pinned: `{at, state}`, time in ms; null: they show now. */
 let moment = null;
+let drawnLevel = null;
 
 function take(message) {
   state = fold(state, message);
-  askToDraw();
+  pacer.ask(urgency(state) !== drawnLevel);
 }
 
-/** Draw at most once per animation frame, however many frames of the stream arrive. */
-function askToDraw() {
-  if (drawAsked) return;
-  drawAsked = true;
-  requestAnimationFrame(draw);
+/** What is drawn at once when it changes: what the robot is in, and what keeps it from driving. */
+function urgency({ systemState, emergencyStop, holds, task }) {
+  const latch = `${emergencyStop?.engaged}${emergencyStop?.standstill_at}`;
+  return [systemState?.state, systemState?.errors, Object.keys(holds), task?.status, latch].join();
 }
 
 function draw() {
-  drawAsked = false;
+  drawnLevel = urgency(state);
+  const view = currentView();
+  document.body.dataset.contact = view.contact.level;
+  const { total } = partCounts(view.state.parts);
+  document.body.dataset.size = total <= FEW ? "small" : total >= MANY ? "large" : "normal";
+  // What is loaded later is not yet an element with an `update`.
+  for (const element of elements) element.update?.(view);
+}
+
+function currentView() {
   const contact = {
     level: connection.level(),
     silenceMs: connection.silenceMs(),
     retryInMs: connection.retryInMs(),
+    roundTripMs: latency.roundTripMs,
+    skipped: connection.skipped,
   };
-  document.body.dataset.contact = contact.level;
   selected ??= Object.values(state.parts).find((part) => part.kind === "system")?.name ?? null;
   // A recording goes at a speed of its own.
   const serverNow = state.replay && state.at ? Date.parse(state.at) : clock.now();
@@ -86,10 +99,8 @@ function draw() {
   const knownAt = isLost ? Date.parse(state.at) : serverNow;
   // A disk may be too slow for one request without any fault that a frame tells.
   const isRefused = performance.now() - refusedAt < REFUSED_MS;
-  const volatile = isRefused || Boolean(state.systemState?.storage_fault);
-  const shown = moment?.state ?? state;
-  const view = {
-    state: shown,
+  return {
+    state: moment?.state ?? state,
     live: state,
     moment,
     enabled: contact.level !== "lost" && moment === null && !state.replay,
@@ -97,23 +108,17 @@ function draw() {
     mock,
     selected,
     preview,
-    serverNow: moment ? moment.at : serverNow,
-    knownAt: moment ? moment.at : knownAt,
-    volatile,
+    serverNow: moment?.at ?? serverNow,
+    knownAt: moment?.at ?? knownAt,
+    volatile: isRefused || Boolean(state.systemState?.storage_fault),
+    stopProgress: stopButton.progress,
   };
-  for (const element of elements) element.update(view);
 }
 
-/** The title is also visible for a hidden page, so it does not wait for an animation frame. */
-function title() {
-  const level = connection.level();
-  const known = level === "lost" ? "No contact" : (robotSentence(state)?.word ?? "Connecting");
-  if (state.replay) {
-    document.title = "REPLAY · Pilothouse";
-    return;
-  }
-  const text = `${tokenForm.isOpen ? "Token needed" : known} · Pilothouse`;
-  if (document.title !== text) document.title = text;
+/** What is not needed to see the state and to stop the robot comes after the first draw. */
+async function loadPanels() {
+  await import("/web/js/panels.js");
+  pacer.ask(true);
 }
 
 /** Request what no frame carries; after a failure it is requested again on reconnection. */
@@ -141,75 +146,104 @@ function hearMock({ kind, data }) {
   setTimeout(loadMock, MOCK_PAUSE_MS);
 }
 
-/** Without example tracks there is no button for them. */
-function loadTracks() {
-  load(["/examples/tracks"], ([{ items }]) => (taskPanel.tracks = items));
-  load(["/tasks"], ([{ controllers }]) => (taskPanel.controllers = controllers));
-}
-
 /** After a restart that kept the events, the stream goes on where it was cut off. */
-function greet({ epoch, boot }) {
-  loadTracks();
+function greet({ epoch, boot, page_version }) {
+  versionNotice.compare(page_version);
   loadMock();
   const goesOn = epoch === state.epoch || (state.epoch !== null && boot > 1);
   if (!goesOn) load(["/events?limit=50"], ([log]) => take({ ...log, type: "log" }));
-  panel.refresh();
+  panel.refresh?.();
 }
 
 /** Show the token form; the rest of the page is hidden, since it is out of date. */
 function askForToken() {
   connection.stop();
   tokenForm.ask();
-  title();
+  watch();
+}
+
+/** What goes on without frames: ages, the title (also of a hidden page), the round trip. */
+function watch() {
+  const level = connection.level();
+  showTitle(state, { level }, tokenForm.isOpen);
+  if (level === "live") latency.look();
+  pacer.ask(level !== document.body.dataset.contact);
 }
 
 connection.addEventListener("unauthorized", askForToken);
 document.addEventListener("ph-unauthorized", askForToken);
 document.addEventListener("ph-token", () => connection.tryNow());
-connection.addEventListener("frame", ({ detail: frame }) => {
+function hear(frame, at = localNow()) {
   if (frame.type === "hello") greet(frame);
   if (frame.type === "event") hearMock(frame);
-  panel.hear(frame);
-  if (frame.type === "state") clock.observe(frame.at, localNow());
+  panel.hear?.(frame);
+  if (frame.type === "state") clock.observe(frame.at, at);
   const isFirst = state.systemState === null;
   take(frame);
   if (isFirst && state.systemState) loadMock();
   if (frame.type === "state") {
-    map.hear(state);
+    map.hear?.(state);
     pathWatch.look(state);
   }
-  title();
-});
+}
 
+/** Show the frames that the page brought, which are as old as its first byte. */
+function showBrought() {
+  const block = document.getElementById("first-frame");
+  if (block === null) return;
+  const [{ responseStart }] = performance.getEntriesByType("navigation");
+  const at = performance.timeOrigin + responseStart;
+  for (const frame of JSON.parse(block.textContent)) hear(frame, at);
+  connection.heardAt(at);
+  block.remove();
+}
+
+connection.addEventListener("frame", ({ detail }) => hear(detail));
 document.addEventListener("ph-select", ({ detail }) => {
   selected = detail;
   draw();
-  panel.bringIntoView();
+  panel.bringIntoView?.();
 });
 document.addEventListener("ph-back", () => document.querySelector("ph-part-tree").focusRow());
 document.addEventListener("ph-preview", ({ detail }) => {
   preview = detail;
-  askToDraw();
+  pacer.ask(true);
 });
 document.addEventListener("ph-moment", ({ detail }) => {
   moment = detail;
   draw();
 });
-document.addEventListener("ph-tab", ({ detail }) => (document.body.dataset.tab = detail));
+document.addEventListener("ph-what-if", async () => {
+  await import("/web/js/what_if/drawer.js");
+  draw();
+  document.querySelector("ph-what-if").open();
+});
+document.addEventListener("ph-tab", ({ detail }) => {
+  document.body.dataset.tab = detail;
+  document.querySelector("main").scrollTop = 0;
+  draw();
+});
+document.addEventListener("ph-why", () => {
+  goTo("why");
+  document.getElementById("why").scrollIntoView({ block: "nearest" });
+});
+document.addEventListener("ph-attention", () => goTo("parts"));
 document.addEventListener("ph-try-now", () => {
   connection.tryNow();
-  askToDraw();
+  pacer.ask(true);
 });
 document.addEventListener("ph-storage-refused", () => {
   refusedAt = performance.now();
-  askToDraw();
+  pacer.ask(true);
 });
 document.addEventListener("ph-restart-read", () => take({ type: "restart_read" }));
 document.addEventListener("ph-earlier", ({ detail }) => take({ ...detail, type: "earlier" }));
 document.addEventListener("ph-replay", ({ detail }) => take({ type: "replay", replay: detail }));
 document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latch: detail }));
-setInterval(askToDraw, REDRAW_MS);
-setInterval(title, REDRAW_MS);
+setInterval(watch, REDRAW_MS);
+listen();
+showBrought();
 connection.tryNow();
 // A request shows at once whether a token is needed; the stream would wait for it first.
 load(["/system_state"], () => {});
+requestAnimationFrame(() => setTimeout(loadPanels));

@@ -36,7 +36,13 @@ Json: TypeAlias = Mapping[str, Any]
 LEGEND = "(*) inferred   ! deviation or error   > changing or pending   x unreachable"
 
 _MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", CALM: ""}
-_LEVEL_STYLES = {"calm": "bold", "attention": "bold yellow", "error": "bold red"}
+_LEVEL_STYLES = {
+    "calm": "bold",
+    "held": "bold yellow",
+    "aborted": "bold yellow",
+    "attention": "bold yellow",
+    "error": "bold red",
+}
 _DRIVING = "bold green"
 _TITLES = "underline"
 _NAMED = 20

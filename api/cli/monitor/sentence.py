@@ -28,11 +28,11 @@ class Sentence:
     """A state and its reasons, the most important one first."""
 
     word: str
-    """IDLE, RUNNING, STOPPING, PAUSED, ERROR, WAS ERROR, or the state of the connection."""
+    """IDLE, RUNNING, STOPPING, HELD, ABORTED, ERROR, WAS ERROR, or the state of the connection."""
     text: str
     more: tuple[str, ...] = ()
     """Further reasons."""
-    level: Literal["calm", "attention", "error"] = "calm"
+    level: Literal["calm", "held", "aborted", "attention", "error"] = "calm"
 
 
 def contact_sentence(view: View) -> Sentence | None:
@@ -138,8 +138,7 @@ def _calm_sentence(robot: Robot) -> Sentence:
     if alarm := alarm_of(state):
         return Sentence(alarm, text, more, "error")
     is_unable = not _holds(robot).keys().isdisjoint(_UNABLE)
-    is_calm = not found and not [*_aborted(robot)] and not is_unable
-    return Sentence(word, text, more, "calm" if is_calm else "attention")
+    return Sentence(word, text, more, "attention" if found or is_unable else _LEVELS.get(word, "calm"))
 
 
 def alarm_of(state: Json) -> str | None:
@@ -155,14 +154,17 @@ def _activity(robot: Robot) -> tuple[str, str]:
         status = (robot.system_state or {})["task_status"]
         if status in _UNKNOWN_TASKS:
             return _UNKNOWN_TASKS[status]
-        text = next(_aborted(robot), "no task")
-        return "IDLE", f"{text}; a new one would be {held}" if held else text
+        text = next(_aborted(robot), None)
+        then = f"; a new one would be {held}" if held else ""
+        return ("IDLE", f"no task{then}") if text is None else ("ABORTED", f"{text}{then}")
     at, why = f"task {task['id']} at {words.percent(task['progress'])}", held or task["reason"]
     text = f"{at}, {why}" if why else at
     if task["status"] == "PAUSING":
         moves = _moving_at(robot)
         return "STOPPING", text if moves is None else f"{text}, still at {words.speed(moves)}"
-    if task["status"] == "PAUSED" or held:
+    if held:
+        return "HELD", text
+    if task["status"] == "PAUSED":
         return "PAUSED", text
     far = f"{words.percent(task['progress'])}, {words.waypoint_words(task)}"
     return "RUNNING", f"task {task['id']} {far}"
@@ -217,6 +219,8 @@ def _holds(robot: Robot) -> Mapping[str, Json]:
     return robot.holds or {}
 
 
+_LEVELS: Mapping[str, Literal["held", "aborted"]] = {"HELD": "held", "ABORTED": "aborted"}
+"""Words with a level of their own: nothing is wrong, and yet a person has to do something."""
 _STANDS = {"RUNNING": "running", "PAUSING": "stopping", "PAUSED": "paused"}
 _UNABLE = ("vehicle", "drive_process")
 """The holds of a vehicle that cannot be driven: without a pose, or without commands."""

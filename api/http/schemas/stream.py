@@ -49,6 +49,9 @@ class HelloJson(Json):
     topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")
     version: str = Field(description="Version of Pilothouse")
+    page_version: str = Field(
+        description="Version of the files of the page; a page of another one asks to be reloaded"
+    )
     replay: ReplayJson | None = Field(
         default=None, description="How a recording of a robot is shown; null: it is a robot"
     )

@@ -139,6 +139,14 @@ def test_a_blocked_change_tells_all_that_stands_against_it() -> None:
     assert error.blockers == blockers
 
 
+def test_a_blocked_change_of_a_large_robot_names_the_first_blockers_and_counts_the_rest() -> None:
+    blockers = [Blocker("UNKNOWN", f"system_{n} is unknown", ()) for n in range(1_106)]
+    error = BlockedError("robot", blockers)
+    assert error.message.startswith("robot cannot be changed: system_0 is unknown; system_1 is")
+    assert error.message.endswith("; system_4 is unknown (and 1,101 more)")
+    assert len(error.blockers) == 1_106
+
+
 def test_an_outdated_reading_tells_how_far_it_is_behind() -> None:
     error = OutdatedReadingError("temperature", 0.25)
     assert error.message == "a newer reading of temperature is held; this one is 0.250 s older"

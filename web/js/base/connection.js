@@ -3,7 +3,7 @@
 import { localNow } from "/web/js/base/clock.js";
 import { token } from "/web/js/base/token.js";
 
-const LATE_MS = 2500;
+const LATE_MS = 1000;
 const LOST_MS = 3000;
 const SILENCE_MS = 5000;
 const RETRY_MS = [500, 1000, 2000, 4000, 8000];
@@ -22,6 +22,8 @@ export class Connection extends EventTarget {
   #lastFrameAt = null;
   #retryAt = null;
   #stopped = false;
+  /** Frames that the service skipped for this page, since it was opened. */
+  skipped = 0;
 
   constructor(resume) {
     super();
@@ -30,6 +32,8 @@ export class Connection extends EventTarget {
     const recheck = () => this.#recheck();
     document.addEventListener("visibilitychange", recheck);
     window.addEventListener("pageshow", recheck);
+    // A tab that was frozen goes on with what is true now.
+    document.addEventListener("resume", recheck);
     window.addEventListener("online", recheck);
   }
 
@@ -63,6 +67,11 @@ export class Connection extends EventTarget {
     this.#drop();
   }
 
+  /** Note that a frame came another way, at a time in ms since 1970. */
+  heardAt(at) {
+    this.#lastFrameAt = at;
+  }
+
   /** State of the connection: "connecting" (no frame yet), "live", "late" or "lost". */
   level() {
     if (this.#lastFrameAt === null) return this.#attempts < 2 ? "connecting" : "lost";
@@ -84,6 +93,7 @@ export class Connection extends EventTarget {
   #take(frame) {
     this.#lastFrameAt = localNow();
     this.#attempts = 0;
+    this.skipped += frame.skipped ?? 0;
     this.dispatchEvent(new CustomEvent("frame", { detail: frame }));
   }
 

@@ -12,6 +12,16 @@ export function isOn({ state }) {
   return ON.has(state);
 }
 
+/** Whether the robot stops its task for it. */
+export function isGrave({ severity }) {
+  return severity === "critical" || severity === "fatal";
+}
+
+/** Whether nobody has acknowledged it in its present state. */
+export function isWaiting({ state }) {
+  return state === "active" || state === "latched" || state === "returned";
+}
+
 /** Shelved, or silenced by the model. */
 export function isSilenced({ suppressed, shelved_until_at }) {
   return suppressed || shelved_until_at !== null;
@@ -72,6 +82,6 @@ function byUrgency({ error: a, below: ofA = [] }, { error: b, below: ofB = [] })
 }
 
 /** Whether an acknowledgement may let the robot go on, now or when the cause ends. */
-export function mayGoOn({ state, severity }) {
-  return state === "latched" || (state === "active" && ["critical", "fatal"].includes(severity));
+export function mayGoOn(error) {
+  return error.state === "latched" || (error.state === "active" && isGrave(error));
 }

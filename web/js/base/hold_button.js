@@ -1,4 +1,5 @@
-/** <ph-hold-button label="...">: dispatches `ph-held` after a press of 1 s, by pointer or key.
+/** <ph-hold-button label="..." short="...">: dispatches `ph-held` after a press of 1 s, by pointer or
+ * key. Where there is little room, `short` is what is seen of the label.
  *
  * Screen readers and switches can only click: for them a second click within 5 s confirms.
  *
@@ -14,6 +15,7 @@ const CONFIRM_MS = 5000;
 
 class HoldButton extends HTMLElement {
   #label = "";
+  #short = null;
   #volatile = false;
   #consent = false;
   #timer = null;
@@ -23,11 +25,12 @@ class HoldButton extends HTMLElement {
   connectedCallback() {
     if (this.button) return;
     this.#label = this.getAttribute("label") ?? "";
-    this.text = el("span", {}, this.#label);
+    this.#short = this.getAttribute("short");
+    this.text = el("span", {}, this.#short ?? this.#label);
     this.told = el("span", { class: "visually-hidden", role: "status" });
     this.button = el(
       "button",
-      { type: "button", "aria-description": "Press and hold for 1 s" },
+      { type: "button", title: "Press and hold for 1 s", "aria-label": this.#short && this.#label },
       el("span", { class: "fill" }),
       this.text,
     );
@@ -55,7 +58,7 @@ class HoldButton extends HTMLElement {
   }
 
   #showLabel() {
-    if (this.#clearing === null) setText(this.text, this.#words);
+    if (this.#clearing === null) this.#seen(this.#words);
   }
 
   set disabled(value) {
@@ -97,7 +100,7 @@ class HoldButton extends HTMLElement {
   #letGo() {
     if (this.#timer === null) return;
     this.#end();
-    this.#say("Keep it pressed for 1 s", TOLD_MS);
+    this.#say(this.#short === null ? "Keep it pressed for 1 s" : "Keep pressed", TOLD_MS);
   }
 
   #end() {
@@ -123,8 +126,18 @@ class HoldButton extends HTMLElement {
   #say(text, forMs) {
     clearTimeout(this.#clearing);
     this.#clearing = text === null ? null : setTimeout(() => this.#say(null), forMs);
-    setText(this.text, text ?? this.#words);
+    this.#seen(text ?? this.#words);
     setText(this.told, text ?? "");
+  }
+
+  #seen(text) {
+    if (this.#short === null) {
+      setText(this.text, text);
+      return;
+    }
+    const isLabel = text === this.#words;
+    setText(this.text, isLabel ? `${this.#short}${this.#volatile ? "; may be forgotten" : ""}` : text);
+    setAttribute(this.button, "aria-label", text);
   }
 }
 

@@ -1,7 +1,7 @@
 /** <ph-pills>: the target and the actual state and mode of a part; one pill when they agree. */
 
 import { el, renderOnce, setAttribute } from "/web/js/base/dom.js";
-import { label } from "/web/js/base/words.js";
+import { label, modeName } from "/web/js/base/words.js";
 
 class Pills extends HTMLElement {
   show(part) {
@@ -41,7 +41,7 @@ function actualPill(actual) {
     return el("span", { class: "pill actual unknown" }, "?", hidden(" unknown"));
   const parts = [el("span", { class: actual.inferred ? "inferred" : null }, actual.state)];
   if (actual.mode)
-    parts.push(el("span", { class: actual.mode_inferred ? "inferred" : null }, `.${actual.mode}`));
+    parts.push(el("span", { class: actual.mode_inferred ? "inferred" : null }, `.${modeName(actual.mode)}`));
   if (actual.inferred || actual.mode_inferred) {
     const title = actual.inferred ? "inferred, not reported" : "the mode is inferred, not reported";
     parts.push(el("span", { title, class: "star" }, " (*)"), hidden(" inferred"));

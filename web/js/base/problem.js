@@ -11,7 +11,7 @@ const FIELDS = {
   start_index: "Start",
 };
 /** Words of the interface that are of no use on the page. */
-const OF_THE_API = /[?&]\w+=|\bstart_index\b|\b(GET|PUT|POST|PATCH|DELETE) |Content-Type|(^|\s|`)--?\w/;
+const OF_THE_API = /[?&]\w+=|\bstart_index\b|\b(GET|PUT|POST|PATCH|DELETE) |Content-Type|(^|\s|\x60)--?\w/;
 
 /** The problem as nodes; blockers that the detail already names are not repeated. */
 export function problemLines(problem) {

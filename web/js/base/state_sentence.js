@@ -3,20 +3,24 @@
  * `api/cli/monitor/sentence.py` has the same rules; one test runs both over the same cases.
  */
 
+import { partProblems } from "/web/js/base/part_problems.js";
 import { currentTask } from "/web/js/base/store.js";
 import { percent, speed, TASK_STATUS, waypointWords } from "/web/js/base/task_words.js";
-import { label, timeOfDay, wholeSeconds } from "/web/js/base/words.js";
+import { timeOfDay, wholeSeconds } from "/web/js/base/words.js";
 
 /** Below this a vehicle stands, m/s; the service uses the same limit. */
 const STANDSTILL_MPS = 0.05;
 const NAMED = 3;
 /** Words for a vehicle that should stand and does not, or of which it is not known. */
 const ALARMS = { STILL_MOVING: "STILL MOVING", STANDSTILL_UNKNOWN: "STANDSTILL UNKNOWN" };
+/** Words with a level of their own: nothing is wrong, and yet a person has to do something. */
+const LEVELS = { HELD: "held", ABORTED: "aborted" };
 const NO_CONTACT = ["lost", "lost"];
 
 /** The sentence at the top of the page: `{level, sign, word, text, more}`.
  *
- * `level` is calm, attention, error, late or lost; `sign` names the icon; `more` has further lines.
+ * `level` is calm, held, aborted, attention, error, late or lost; `sign` names the icon; `more` has
+ * further lines.
  */
 export function stateSentence(state, contact) {
   if (contact.level === "lost") {
@@ -49,8 +53,8 @@ export function robotSentence(state) {
   const { word, text } = activity(state, task);
   const [first, ...more] = [...reasonTexts, ...found];
   const { vehicle, drive_process: undriven } = state.holds;
-  const isCalm = !first && !aborted(state).length && !vehicle && !undriven;
-  const level = alarm ? "error" : isCalm ? "calm" : "attention";
+  const isWrong = first || vehicle || undriven;
+  const level = alarm ? "error" : isWrong ? "attention" : (LEVELS[word] ?? "calm");
   const sign = alarm ? "error" : word.toLowerCase();
   return sentence([level, sign], alarm ?? word, first ? `${first}; ${text}` : text, more);
 }
@@ -83,13 +87,6 @@ export function storageSentence({ systemState }, contact) {
   return { word: "STORAGE FAILS", text: `${fault}; a restart may forget what you ask now` };
 }
 
-/** What was lost in a restart of the service; empty without one. */
-export function restartWords({ restartedAt, boot }) {
-  if (restartedAt === null) return "";
-  const kept = boot > 1 ? "nothing moves before somebody asks" : "earlier tasks and holds are gone";
-  return `Service restarted at ${timeOfDay(restartedAt)}: ${kept}.`;
-}
-
 function sentence([level, sign], word, text, more = []) {
   return { level, sign, word, text, more };
 }
@@ -101,8 +98,9 @@ function activity(state, task) {
   if (task === null) {
     if (task_status === "RUNNING_TASK") return { word: "RUNNING", text: "the task is running" };
     if (task_status === "PAUSED_TASK") return { word: "PAUSED", text: "the task is paused" };
-    const [text = "no task"] = aborted(state);
-    return { word: "IDLE", text: held ? `${text}; a new one would be ${held}` : text };
+    const [text] = aborted(state);
+    const next = held && `; a new one would be ${held}`;
+    return text ? { word: "ABORTED", text: `${text}${next}` } : { word: "IDLE", text: `no task${next}` };
   }
   const at = `task ${task.id} at ${percent(task.progress)}`;
   const why = held || task.reason;
@@ -110,7 +108,8 @@ function activity(state, task) {
   const moves = movingAt(state);
   if (task.status === "PAUSING")
     return { word: "STOPPING", text: moves === null ? text : `${text}, still at ${speed(moves)}` };
-  if (task.status === "PAUSED" || held) return { word: "PAUSED", text };
+  if (held) return { word: "HELD", text };
+  if (task.status === "PAUSED") return { word: "PAUSED", text };
   return {
     word: "RUNNING",
     text: `task ${task.id} ${percent(task.progress)}, ${waypointWords(task)}`,
@@ -159,43 +158,6 @@ function movingAt({ vehicle, holds }) {
   // The hold is set while there is no pose that is recent enough.
   if (typeof moves !== "number" || holds.vehicle || Math.abs(moves) < STANDSTILL_MPS) return null;
   return Math.abs(moves);
-}
-
-const problemsOf = new WeakMap();
-
-/** What is not as it should be with parts, the first few; a frame without parts costs nothing. */
-function partProblems(parts) {
-  if (!problemsOf.has(parts)) problemsOf.set(parts, findProblems(parts));
-  return problemsOf.get(parts);
-}
-
-function findProblems(parts) {
-  const found = new Map();
-  const isExplained = (part) =>
-    (part.parts ?? []).some((name) => found.has(name) || (parts[name] && isExplained(parts[name])));
-  // Nodes first: they explain why their systems deviate.
-  const nodesFirst = Object.values(parts).sort((a, b) => isSystem(a) - isSystem(b));
-  for (const part of nodesFirst) {
-    const words = problemOf(part);
-    if (words && !(isSystem(part) && isExplained(part))) found.set(part.name, words);
-  }
-  const all = [...new Set(found.values())];
-  const left = all.length - NAMED;
-  return left > 0 ? [...all.slice(0, NAMED), `${left} more such parts`] : all;
-}
-
-function isSystem({ kind }) {
-  return kind === "system" ? 1 : 0;
-}
-
-function problemOf(part) {
-  const { name, actual, change, converged } = part;
-  if (part.reachable === false && !isSystem(part)) return `${name} is unreachable`;
-  if (actual.state === "errorprocessing") return `${name} is in errorprocessing`;
-  const target = part.effective_target ?? part.target;
-  if (converged || change || !target) return null;
-  const is = actual.state === "unknown" ? "in an unknown state" : label(actual);
-  return part.deviation_reason ?? `${name} is ${is}, target ${label(target)}`;
 }
 
 const STANDS = { RUNNING: "running", PAUSING: "stopping", PAUSED: "paused" };

@@ -17,6 +17,7 @@ export function emptyState() {
     epoch: null,
     boot: null,
     restartedAt: null,
+    isResumed: false,
     at: null,
     systemState: null,
     parts: {},
@@ -60,12 +61,12 @@ export function firstEventId({ events }) {
 
 const FOLDERS = {
   /** After a restart of the service the earlier state is void, and told anew. Errors that ended
-   * without contact are not told: the next frame has all that are on.
+   * without contact are not told: the next frame has all that are on, and replaces those known.
    *
    * The first run of a folder has boot 1: then nothing was kept, and ids begin again.
    */
   hello(state, { epoch, boot, started_at, newest, replay = null }) {
-    if (epoch === state.epoch) return { ...state, errors: {}, replay };
+    if (epoch === state.epoch) return { ...state, isResumed: true, replay };
     if (state.epoch === null) return { ...state, epoch, boot, lastEventId: newest, replay };
     const { events, eventsKept, oldestEventId, lastEventId } = state;
     const fresh = { ...emptyState(), epoch, boot, restartedAt: started_at, replay };
@@ -88,13 +89,15 @@ const FOLDERS = {
 
   /** Frames carry changes; the first one, and the first after a loss, carry everything. */
   state(state, frame) {
+    const errors = state.isResumed ? {} : state.errors;
     return {
       ...state,
+      isResumed: false,
       at: frame.at,
       systemState: frame.system_state ?? state.systemState,
       parts: frame.parts ? { ...state.parts, ...frame.parts } : state.parts,
       signals: frame.signals ? { ...state.signals, ...frame.signals } : state.signals,
-      errors: frame.errors ? withoutEnded({ ...state.errors, ...frame.errors }) : state.errors,
+      errors: frame.errors ? withoutEnded({ ...errors, ...frame.errors }) : errors,
       reactions: frame.reactions ? { ...state.reactions, ...frame.reactions } : state.reactions,
       task: frame.task === undefined ? state.task : frame.task,
       vehicle: frame.vehicle ?? state.vehicle,

@@ -25,16 +25,21 @@ export function timeAndDay(at, now = Date.now()) {
   return date === isoDate(now) ? timeOfDay(at) : `${timeOfDay(at)} on ${date}`;
 }
 
+/** The mode that every part has is called "__DEFAULT__" in models, and "default" here. */
+export function modeName(mode) {
+  return mode === "__DEFAULT__" ? "default" : mode;
+}
+
 /** "active.FAST", as in ROS 2; "?" where it is not known. */
 export function label({ state, mode }) {
   if (state === "unknown") return "?";
-  return mode ? `${state}.${mode}` : state;
+  return mode ? `${state}.${modeName(mode)}` : state;
 }
 
 /** What a change requests. */
 export function requestWords(asked) {
   if (typeof asked === "string") return asked;
-  if (asked.mode) return `mode ${asked.mode}`;
+  if (asked.mode) return `mode ${modeName(asked.mode)}`;
   if (asked.transition) return asked.transition;
   return "parameters";
 }

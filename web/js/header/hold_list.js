@@ -1,11 +1,12 @@
-/** <ph-hold-list>: the holds that keep the vehicle from driving, with buttons to release them.
+/** <ph-hold-list>: all holds that keep the vehicle from driving, with why, for how long, by whom.
  *
- * Without the last one the robot drives, so releasing needs a long press. Dispatches `ph-release`
- * with `{owner, button, volatile}`.
+ * Without the last one the robot drives, so releasing needs a long press.
  */
 
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
+import { whileSending } from "/web/js/base/sending.js";
 import { wholeSeconds } from "/web/js/base/words.js";
+import { holdKey, isReleasable, releaseHold, whoseWords } from "/web/js/header/release.js";
 
 class HoldList extends HTMLElement {
   #lines = new Map();
@@ -13,23 +14,32 @@ class HoldList extends HTMLElement {
   connectedCallback() {
     if (this.list) return;
     this.list = el("ul", { class: "holds", "aria-label": "Holds" });
-    this.append(el("h3", {}, "Held by"), this.list);
+    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
+    this.append(this.list, this.problem);
+  }
+
+  update({ live, contact, knownAt, volatile }) {
+    const holds = Object.values(live.holds);
+    setAttribute(this.closest("section"), "hidden", holds.length === 0);
+    this.show({ holds, enabled: contact.level !== "lost" && !live.replay, knownAt, volatile });
   }
 
   show({ holds, enabled, knownAt, volatile }) {
     setAttribute(this, "hidden", holds.length === 0);
-    const wanted = new Set(holds.map(keyOf));
+    const wanted = new Set(holds.map(holdKey));
     for (const [key, line] of this.#lines) {
       if (wanted.has(key)) continue;
       line.item.remove();
       this.#lines.delete(key);
+      this.#complain("");
     }
     // A line stays as it is while only its reason changes, so that a press on it goes on.
     for (const hold of holds) {
-      if (!this.#lines.has(keyOf(hold))) this.#add(hold);
-      const { reason, since, release } = this.#lines.get(keyOf(hold));
+      if (!this.#lines.has(holdKey(hold))) this.#add(hold);
+      const { reason, since, release } = this.#lines.get(holdKey(hold));
       setText(reason, hold.reason ? `: ${hold.reason}` : "");
-      setText(since, `for ${wholeSeconds(knownAt - Date.parse(hold.since_at))}`);
+      const whose = whoseWords(hold);
+      setText(since, `for ${wholeSeconds(knownAt - Date.parse(hold.since_at))}${whose && `, ${whose}`}`);
       if (!release) continue;
       release.disabled = !enabled;
       release.volatile = volatile;
@@ -37,34 +47,21 @@ class HoldList extends HTMLElement {
   }
 
   #add(hold) {
-    const { owner, by } = hold;
-    const [reason, since] = [el("span"), el("span", { class: "quiet" })];
-    // Pilothouse clears its own holds when their cause is gone, but for the one of a restart.
-    const isOfReaction = owner.startsWith("reaction:");
-    const release = !(owner in UNTIL) && !isOfReaction ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
-    release?.addEventListener("ph-held", ({ detail: { volatile } }) => {
-      const detail = { owner, button: release.button, volatile };
-      this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail }));
-    });
-    const whose = by ? (by === owner ? "" : `, by ${by}`) : (isOfReaction ? ", until that is over" : OWN[owner] ?? "");
-    const words = el("div", {}, el("strong", {}, owner), reason, el("p", { class: "quiet" }, since, whose));
-    const item = el("li", {}, words, release);
+    const { owner } = hold;
+    const [reason, since] = [el("span"), el("p", { class: "quiet" })];
+    const release = isReleasable(hold) ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
+    release?.addEventListener("ph-held", ({ detail: { volatile } }) =>
+      whileSending(release.button, async () => this.#complain(await releaseHold(owner, volatile))),
+    );
+    const item = el("li", {}, el("div", {}, el("strong", {}, owner), reason, since), release);
     this.list.append(item);
-    this.#lines.set(keyOf(hold), { item, reason, since, release });
+    this.#lines.set(holdKey(hold), { item, reason, since, release });
   }
-}
 
-/** What ends the holds that Pilothouse releases itself. */
-const UNTIL = {
-  error: ", until the errors end",
-  vehicle: ", until there is a pose",
-  drive_process: ", until the vehicle can be commanded",
-};
-
-const OWN = { ...UNTIL, restart: ", by Pilothouse" };
-
-function keyOf({ owner, by, since_at }) {
-  return JSON.stringify([owner, by, since_at]);
+  #complain(text) {
+    setText(this.problem, text);
+    setAttribute(this.problem, "hidden", text === "");
+  }
 }
 
 customElements.define("ph-hold-list", HoldList);

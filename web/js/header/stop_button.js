@@ -5,90 +5,85 @@
 
 import { request } from "/web/js/base/api.js";
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
-import { whileSending } from "/web/js/base/sending.js";
 import { mayMove, standstillWords } from "/web/js/base/state_sentence.js";
-import { timeOfDay } from "/web/js/base/words.js";
+import { drawSteps, stopSteps } from "/web/js/header/stop_steps.js";
 
 const ANSWER_MS = 2000;
-/** A release waits up to 2 s for the disk before it is carried out, and as long for its outcome. */
-const RELEASED_MS = 8000;
 const RETRY_MS = 500;
 const NOTE = "Software stop, not safety-rated";
 const NO_ROBOT = "This is a recording: no robot hears STOP here";
 
 class StopButton extends HTMLElement {
   #sending = false;
-  #undelivered = false;
   #problem = null;
+  #isUndelivered = false;
   #latch = null;
-  #stands = "";
-  #moves = false;
+  /** When this page sent the stop that is engaged, and when it was answered, ms since 1970. */
+  #sentAt = null;
+  #answeredAt = null;
 
   connectedCallback() {
     this.word = el("span", { class: "octagon" }, "STOP");
     this.button = el(
       "button",
-      { type: "button", class: "stop", "aria-describedby": "stop-note" },
+      {
+        type: "button",
+        class: "stop",
+        "aria-describedby": "stop-note",
+        "aria-keyshortcuts": "Shift+Escape",
+        title: "Stop the robot: Shift+Esc",
+      },
       this.word,
     );
-    this.status = el("p", { class: "stop-status", "aria-live": "assertive" });
-    this.note = el("p", { id: "stop-note", class: "quiet" }, NOTE);
-    this.release = el("ph-hold-button", { label: "Release the stop (hold)", hidden: true });
-    this.by = el("p", { class: "quiet" });
+    this.steps = el("ol", { class: "stop-steps", "aria-label": "Emergency stop" });
     this.standstill = el("p", { class: "standstill" });
-    const text = el(
-      "div",
-      { class: "stop-text" },
-      this.status,
-      this.standstill,
-      this.by,
-      this.release,
-      this.note,
-    );
-    this.append(text, this.button);
+    this.note = el("p", { id: "stop-note" }, NOTE);
+    this.key = el("p", {}, "Key: ", el("kbd", {}, "Shift+Esc"));
+    this.alarm = el("p", { class: "stop-alarm", role: "alert", hidden: true });
+    const text = el("div", { class: "stop-text" }, this.steps, this.standstill, this.note, this.key);
+    this.append(text, this.button, this.alarm);
     // On pointerdown and not on click: a finger that slides off must still stop the robot.
-    this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.#engage());
-    this.button.addEventListener("click", () => this.#engage());
-    this.release.addEventListener("ph-held", ({ detail }) => this.#release(detail.volatile));
+    this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.engage());
+    this.button.addEventListener("click", () => this.engage());
   }
 
-  update({ state, contact, volatile }) {
-    this.#latch = state.emergencyStop;
-    this.#moves = mayMove(state);
-    this.#stands = contact.level === "lost" ? "" : standstillWords(state);
-    this.release.disabled = contact.level === "lost" || Boolean(state.replay);
-    this.release.volatile = volatile;
-    this.button.disabled = Boolean(state.replay);
-    setText(this.note, state.replay ? NO_ROBOT : NOTE);
+  /** What is known of the stop: its steps, as `{name, text, isOpen}`. */
+  get progress() {
+    const at = this.#latch?.since_at ? Date.parse(this.#latch.since_at) : null;
+    return stopSteps(this.#latch, { sentAt: this.#sentAt, answeredAt: this.#answeredAt, at });
+  }
+
+  update({ live, contact }) {
+    this.#latch = live.emergencyStop;
+    if (!this.#sending && !this.#latch?.engaged) this.#sentAt = this.#answeredAt = null;
+    this.button.disabled = Boolean(live.replay);
+    setText(this.note, live.replay ? NO_ROBOT : NOTE);
+    setText(this.standstill, this.#latch?.engaged && contact.level !== "lost" ? standstillWords(live) : "");
+    setAttribute(this.standstill, "data-moving", mayMove(live));
     this.#render();
   }
 
-  async #engage() {
+  /** Engage the emergency stop, and try until that is confirmed. */
+  async engage() {
     if (this.#sending || this.button.disabled) return;
     this.#sending = true;
-    this.#problem = null;
+    this.#sentAt = Date.now();
+    this.#answeredAt = null;
     this.#render();
-    while (!(await this.#put({ engaged: true, reason: "STOP on the monitor page" }, ANSWER_MS))) {
-      this.#undelivered = true;
+    while (!(await this.#put({ engaged: true, reason: "STOP on the monitor page" }))) {
+      this.#isUndelivered = true;
       this.#render();
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
     }
-    this.#sending = this.#undelivered = false;
+    this.#answeredAt = Date.now();
+    this.#sending = this.#isUndelivered = false;
     this.#render();
   }
 
-  async #release(volatile) {
-    const body = { engaged: false, reason: "released on the monitor page" };
-    if (volatile) body.volatile = true;
-    await whileSending(this.release.button, () => this.#put(body, RELEASED_MS));
-    this.#render();
-  }
-
-  async #put(body, timeoutMs) {
+  async #put(body) {
     try {
-      const options = { keepalive: true, timeoutMs };
+      const options = { keepalive: true, timeoutMs: ANSWER_MS };
       this.#latch = await request("PUT", "/emergency_stop", body, options);
-      this.#problem = null;
     } catch (error) {
       this.#problem = error.problem;
       return false;
@@ -101,35 +96,18 @@ class StopButton extends HTMLElement {
     const engaged = Boolean(this.#latch?.engaged);
     const phase = this.#sending ? "sending" : engaged ? "engaged" : "ready";
     setAttribute(this, "data-phase", phase);
-    setAttribute(this, "data-undelivered", this.#undelivered);
     setText(this.word, { sending: "SENDING", engaged: "ENGAGED", ready: "STOP" }[phase]);
-    setAttribute(
-      this.button,
-      "aria-label",
-      { ready: "STOP", sending: "STOP, sending", engaged: "STOP, engaged" }[phase],
-    );
-    setAttribute(this.release, "hidden", !engaged || this.#sending);
-    setText(this.status, this.#statusWords(engaged));
-    setText(this.by, phase === "engaged" ? byWords(this.#latch) : "");
-    setAttribute(this.standstill, "data-moving", this.#moves);
-    setText(this.standstill, phase === "engaged" ? this.#stands : "");
+    const label = { ready: "STOP", sending: "STOP, sending", engaged: "STOP, engaged" }[phase];
+    setAttribute(this.button, "aria-label", label);
+    const steps = phase === "ready" ? [] : this.progress;
+    drawSteps(this.steps, steps);
+    setAttribute(this.steps, "hidden", phase === "ready");
+    setAttribute(this.key, "hidden", phase !== "ready");
+    setAttribute(this.note, "hidden", phase !== "ready");
+    setAttribute(this.alarm, "hidden", !this.#isUndelivered);
+    const refused = this.#problem?.status ? ` (${this.#problem.detail})` : "";
+    setText(this.alarm, this.#isUndelivered ? `Not delivered. Use the hardware stop.${refused} Retrying.` : "");
   }
-
-  #statusWords(engaged) {
-    if (this.#undelivered) {
-      const refused = this.#problem?.status ? ` (${this.#problem.detail})` : "";
-      return `Not delivered. Use the hardware stop.${refused} Retrying.`;
-    }
-    if (this.#sending) return "Sending the stop …";
-    if (this.#problem) return `Not released: ${this.#problem.detail}`;
-    if (!engaged) return "";
-    const { since_at } = this.#latch;
-    return `Stop engaged${since_at ? ` at ${timeOfDay(since_at)}` : ""}`;
-  }
-}
-
-function byWords({ by, reason }) {
-  return [by ? `by ${by}` : "", reason ?? ""].filter(Boolean).join(": ");
 }
 
 customElements.define("ph-stop-button", StopButton);

@@ -1,117 +1,181 @@
-/** <ph-alarm>: one error with what follows from it, and what can be done about its announcing.
+/** <ph-alarm>: one error: in two lines what it is, and opened what follows and what can be done.
  *
- * Dispatches `ph-select` with the name of its part.
+ * Dispatches `ph-select` with the name of its part, and `ph-show-moment` with when it began.
  */
 
-import { request, partPath } from "/web/js/base/api.js";
+import { partPath, request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
-import { errorName, isOn, mayGoOn, worseBelow } from "/web/js/base/error_groups.js";
+import { errorName, isOn, isWaiting, mayGoOn, worseBelow } from "/web/js/base/error_groups.js";
+import { isSame } from "/web/js/base/same.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
 import { whileSending } from "/web/js/base/sending.js";
-import { duration, timeAndDay } from "/web/js/base/words.js";
-import "/web/js/inspector/shelve_form.js";
+import "/web/js/base/sparkline.js";
+import {
+  ageWords,
+  factsOf,
+  hintOf,
+  measured,
+  signalOf,
+  tagsOf,
+} from "/web/js/inspector/error_words.js";
+import { consequence, showShape } from "/web/js/inspector/severity.js";
 
 const BELOW_SHOWN = 20;
 
 class Alarm extends HTMLElement {
+  #shown = null;
   #path = "";
+  #signal;
 
   connectedCallback() {
-    if (this.head) return;
-    this.name = el("strong", { class: "alarm-name" });
-    this.link = el("button", { type: "button", class: "link alarm-name" });
-    this.link.addEventListener("click", () =>
-      this.dispatchEvent(new CustomEvent("ph-select", { bubbles: true, detail: this.partName })),
+    if (this.details) return;
+    this.shape = el("span", { class: "shape" });
+    this.name = el("strong");
+    this.owner = el("span", { class: "alarm-part" });
+    this.tags = el("span", { class: "tags" });
+    this.age = el("span", { class: "age" });
+    this.message = el("span", { class: "alarm-message" });
+    this.spark = el("ph-sparkline", { hidden: true });
+    this.details = el(
+      "details",
+      { class: "alarm" },
+      el(
+        "summary",
+        {},
+        this.shape,
+        el("span", { class: "alarm-title" }, this.name, this.owner, this.tags),
+        this.age,
+        this.message,
+        this.spark,
+      ),
     );
-    this.severity = el("span", { class: "severity" });
-    this.head = el("p", { class: "alarm-head" }, this.name, this.link, this.severity);
-    this.message = el("p", { class: "alarm-message" });
-    this.facts = el("p", { class: "quiet" });
+    this.details.addEventListener("toggle", () => this.#fillBody());
+    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
+    this.append(this.details, this.problem);
+  }
+
+  set open(value) {
+    this.details.open = value;
+  }
+
+  /** Show an error, and `below`, what follows from it; the rest is what `<ph-why>` was given. */
+  show({ error, below, view }) {
+    const { state, enabled, knownAt, volatile } = view;
+    setText(this.age, ageWords(error, knownAt));
+    if (error !== this.#shown?.error) this.#signal = signalOf(error, state.signals);
+    const signal = this.#signal;
+    if (signal && isOn(error)) this.spark.show(signal, view);
+    const key = [error, enabled, volatile, ...below];
+    if (this.#shown && isSame(key, this.#shown.key)) return;
+    this.#shown = { error, below, view, key, signal: state.signals[signal] };
+    this.#showHead(error, below, state);
+    setAttribute(this.spark, "hidden", !signal || !isOn(error));
+    this.#fillBody();
+  }
+
+  #showHead(error, below, { signals, parts }) {
+    const { part, state } = error;
+    // A root is as urgent as the worst that follows from it.
+    const { severity } = worseBelow(error, below) ?? error;
+    this.#path = `${part === null ? "" : partPath(parts[part] ?? { kind: "node", name: part })}/errors/${encodeURIComponent(error.error)}`;
+    setAttribute(this, "data-state", state);
+    setAttribute(this, "data-severity", severity);
+    showShape(this.shape, severity, isOn(error));
+    setAttribute(this.details.firstChild, "title", errorName(error));
+    setText(this.name, error.error);
+    setText(this.owner, part === null ? "" : ` of ${part}`);
+    renderOnce(this.tags, tagsOf(error).join(), () => tagsOf(error).map((tag) => el("span", { class: "tag" }, tag)));
+    setText(this.message, plainMessage(error.message, signals));
+  }
+
+  /** The body is made when it is first opened: a list may hold hundreds of errors. */
+  #fillBody() {
+    if (!this.details.open || !this.#shown) return;
+    if (!this.body) this.#buildBody();
+    const { error, below, view, signal } = this.#shown;
+    const worse = worseBelow(error, below);
+    setText(this.meaning, consequence(worse ?? error) + (worse ? `, by ${errorName(worse)}` : ""));
+    setText(this.measure, measured(error, signal));
+    setText(this.facts, factsOf(error));
+    const hint = hintOf(error);
+    setText(this.advice, hint);
+    setAttribute(this.advice, "hidden", !hint);
+    this.#showBelow(error, below, view);
+    this.#showButtons(error, view);
+  }
+
+  #buildBody() {
+    this.meaning = el("p", { class: "consequence" });
+    this.measure = el("p", { class: "measured" });
+    this.facts = el("p", { class: "facts" });
     this.advice = el("p", { class: "hint" });
     this.list = el("ul");
     this.summary = el("summary");
-    this.below = el("details", { class: "reasons-of", hidden: true }, this.summary, this.list);
+    this.below = el("details", { class: "unfold", hidden: true }, this.summary, this.list);
+    this.below.addEventListener("toggle", () => this.#fillBody());
     this.held = el("ph-hold-button", { label: "Acknowledge (hold)", hidden: true });
     this.held.addEventListener("ph-held", ({ detail }) => this.#acknowledge(this.held.button, detail));
-    this.seen = el("button", { type: "button", class: "small" }, "Acknowledge");
-    this.seen.addEventListener("click", () => this.#acknowledge(this.seen, {}));
-    this.shelve = el("button", { type: "button", class: "small", "aria-expanded": "false" }, "Shelve …");
-    this.shelve.addEventListener("click", () => this.#toggleForm());
-    this.announce = el("button", { type: "button", class: "small" }, "Announce again");
-    this.announce.addEventListener("click", () => this.#send(this.announce, "DELETE", "/shelf"));
-    this.form = el("ph-shelve-form", { hidden: true });
-    this.form.addEventListener("ph-shelve", ({ detail }) => this.#shelve(detail));
-    this.form.addEventListener("ph-cancel", () => this.#toggleForm());
-    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
-    this.append(
-      this.head,
-      this.message,
-      this.facts,
-      this.advice,
-      this.below,
-      el("div", { class: "buttons" }, this.held, this.seen, this.shelve, this.announce),
-      this.form,
-      this.problem,
-    );
+    this.seen = this.#button("Acknowledge", () => this.#acknowledge(this.seen, {}));
+    this.shelve = this.#button("Shelve …", () => this.#openForm());
+    this.announce = this.#button("Announce again", () => this.#send(this.announce, "DELETE", "/shelf"));
+    this.buttons = el("div", { class: "buttons" }, this.held, this.seen, this.shelve, this.announce);
+    const said = [this.meaning, this.measure, this.facts, this.advice];
+    this.body = el("div", { class: "alarm-body" }, ...said, this.buttons, this.#links(), this.below);
+    this.details.append(this.body);
   }
 
-  /** Show an error.
-   *
-   * `below` follows from it, `part` is its part as in frames; undefined: the robot itself.
-   */
-  show({ error, below, part, enabled, knownAt, volatile }) {
-    this.partName = error.part;
-    this.#path = `${part ? partPath(part) : ""}/errors/${encodeURIComponent(error.error)}`;
-    setAttribute(this, "data-state", error.state);
-    setAttribute(this, "data-severity", error.severity);
-    const isOfPart = error.part !== null;
-    setText(isOfPart ? this.link : this.name, errorName(error));
-    setAttribute(this.name, "hidden", isOfPart);
-    setAttribute(this.link, "hidden", !isOfPart);
-    setText(this.severity, [error.severity, error.first_out ? "first" : ""].filter(Boolean).join(", "));
-    setText(this.message, error.message);
-    setAttribute(this.message, "hidden", error.message === "");
-    setText(this.facts, factsOf(error, knownAt));
-    setText(this.advice, error.hint ?? "");
-    setAttribute(this.advice, "hidden", !error.hint);
-    this.#showBelow(error, below);
-    this.#showButtons(error, enabled, volatile);
+  #links() {
+    this.link = this.#button("", () => this.#tell("ph-select", this.#shown.error.part), "link");
+    const tell = () => this.#tell("ph-show-moment", { at: Date.parse(this.#shown.error.since_at) });
+    this.moment = this.#button("Show on the timeline", tell, "link");
+    return el("div", { class: "links" }, this.link, this.moment);
   }
 
-  #showBelow(error, below) {
+  #button(text, act, kind = "small") {
+    const button = el("button", { type: "button", class: kind }, text);
+    button.addEventListener("click", act);
+    return button;
+  }
+
+  #showBelow(error, below, view) {
     setAttribute(this.below, "hidden", below.length === 0);
-    const worse = worseBelow(error, below);
-    const leadsTo = worse ? `: ${errorName(worse)}, ${worse.severity}` : "";
-    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this${leadsTo}`);
-    const shown = below.slice(0, BELOW_SHOWN).map((error) => [errorName(error), error.message, error.state]);
-    renderOnce(this.list, JSON.stringify([shown, below.length]), () => [
-      ...shown.map(([name, message, state]) =>
-        el("li", { "data-state": state }, el("strong", {}, name), message ? `: ${message}` : ""),
-      ),
+    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this`);
+    if (!this.below.open) return;
+    const shown = below.slice(0, BELOW_SHOWN);
+    renderOnce(this.list, JSON.stringify([shown.map(errorName), below.length]), () => [
+      ...shown.map(() => el("li", {}, el("ph-alarm"))),
       ...(below.length > BELOW_SHOWN ? [el("li", { class: "quiet" }, `and ${below.length - BELOW_SHOWN} more`)] : []),
     ]);
+    shown.forEach((each, index) => this.list.children[index].firstChild.show({ error: each, below: [], view }));
   }
 
-  #showButtons(error, enabled, volatile) {
-    const { state, shelved_until_at: until } = error;
-    const isWaiting = ["active", "latched", "returned"].includes(state);
+  #showButtons(error, { enabled, volatile }) {
+    const { part, since_at: since, shelved_until_at: until } = error;
     const needsHold = mayGoOn(error);
-    setAttribute(this.held, "hidden", !(isWaiting && needsHold));
+    setAttribute(this.held, "hidden", !(isWaiting(error) && needsHold));
     this.held.disabled = !enabled;
     this.held.volatile = volatile;
-    setAttribute(this.seen, "hidden", !isWaiting || needsHold);
+    setAttribute(this.seen, "hidden", !isWaiting(error) || needsHold);
     setAttribute(this.shelve, "hidden", until !== null || (!isOn(error) && !error.chattering));
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
-    if (until !== null && !this.form.hidden) this.#toggleForm();
-    this.form.enabled = enabled;
+    setAttribute(this.link, "hidden", part === null);
+    if (part !== null) setText(this.link, `Show ${part}`);
+    setAttribute(this.moment, "hidden", !since);
+    if (until !== null) this.form?.close();
+    if (this.form) this.form.enabled = enabled;
   }
 
-  #toggleForm() {
-    const isOpen = this.form.hidden;
-    setAttribute(this.form, "hidden", !isOpen);
-    setAttribute(this.shelve, "aria-expanded", String(isOpen));
-    if (isOpen) this.form.begin();
-    else this.shelve.focus();
+  /** The form is loaded when somebody shelves an error for the first time. */
+  async #openForm() {
+    if (!this.form) {
+      await whileSending(this.shelve, () => import("/web/js/inspector/shelve_form.js"));
+      this.form = el("ph-shelve-form", { hidden: true });
+      this.form.addEventListener("ph-shelve", ({ detail }) => this.#shelve(detail));
+      this.form.addEventListener("ph-cancel", () => this.shelve.focus());
+      this.buttons.after(this.form);
+    }
+    this.form.toggle();
   }
 
   #acknowledge(button, { volatile }) {
@@ -134,28 +198,10 @@ class Alarm extends HTMLElement {
       setAttribute(this.problem, "hidden", said === "");
     });
   }
-}
 
-const OVER = {
-  latched: "its cause is gone; it waits for you",
-  acknowledged: "acknowledged",
-  returned: "it is over",
-};
-
-function factsOf(error, knownAt) {
-  const { state, since_at: since, ended_at: ended, count } = error;
-  const facts = [OVER[state] ?? ""];
-  if (isOn(error)) facts.push(`for ${duration(knownAt - Date.parse(since))}`);
-  if (state === "returned" && since) {
-    const lasted = ended ? `, for ${duration(Date.parse(ended) - Date.parse(since))}` : "";
-    facts.push(`from ${timeAndDay(since)}${lasted}`);
+  #tell(name, detail) {
+    this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
   }
-  if (count > 1) facts.push(`${count} times`);
-  if (error.shelved_until_at !== null) {
-    facts.push(`shelved until ${timeAndDay(error.shelved_until_at)}: ${error.shelved_because}`);
-  }
-  if (error.suppressed) facts.push("silenced by the model");
-  return facts.filter(Boolean).join(" · ");
 }
 
 customElements.define("ph-alarm", Alarm);

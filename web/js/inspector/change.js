@@ -1,42 +1,47 @@
-/** <ph-change>: the progress of the last change, step by step, or why a request was rejected. */
+/** <ph-change>: the progress of the last change, step by step, or why a request was rejected.
+ *
+ * The end of a change stays until it is dismissed.
+ */
 
 import { request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { problemLines } from "/web/js/base/problem.js";
 import { whileSending } from "/web/js/base/sending.js";
-import { progressWords, stepLists } from "/web/js/base/step_list.js";
+import { areMany, notableSteps, progressWords, stepLists } from "/web/js/base/step_list.js";
 import { changeWords, isOpen, requestWords, timeOfDay, wholeSeconds } from "/web/js/base/words.js";
 
 class Change extends HTMLElement {
+  #dismissed = new Set();
+
   connectedCallback() {
     if (this.result) return;
     this.problem = el("div", { class: "problem", role: "alert", hidden: true });
     this.asked = el("h3");
-    this.status = el("p", { class: "change-status" });
+    this.status = el("p", { class: "change-status", role: "status" });
     this.progress = el("p", { class: "facts" });
+    this.bar = el("progress", { hidden: true, "aria-label": "Steps that are done" });
     this.steps = el("div", { class: "steps" });
+    this.details = el("details", { class: "unfold" }, el("summary", {}, "Steps"), this.steps);
     this.cancel = el(
       "button",
       { type: "button", class: "small", onclick: () => this.#cancel() },
       "Cancel the rest",
     );
-    this.result = el(
-      "div",
-      { class: "change", hidden: true },
-      this.asked,
-      this.status,
-      this.progress,
-      this.steps,
-      this.cancel,
-    );
+    const dismiss = () => this.#dismiss();
+    this.dismiss = el("button", { type: "button", class: "small", onclick: dismiss }, "Dismiss");
+    const head = el("div", { class: "change-head" }, this.asked, this.cancel, this.dismiss);
+    const parts = [head, this.status, this.progress, this.bar, this.details];
+    this.result = el("div", { class: "change", hidden: true }, ...parts);
     this.append(this.problem, this.result);
   }
 
-  show({ part, change, problem, knownAt }) {
+  show({ part, change, problem, enabled, knownAt }) {
     setAttribute(this.problem, "hidden", !problem);
     renderOnce(this.problem, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
-    setAttribute(this.result, "hidden", !change);
-    if (!change) return;
+    const isShown = change && !this.#dismissed.has(nameOf(change));
+    setAttribute(this.result, "hidden", !isShown);
+    if (!isShown) return;
+    const isNew = this.change?.id !== change.id || this.change.status !== change.status;
     this.change = change;
     const of = change.part === part.name ? "" : ` of ${change.part}`;
     setText(
@@ -48,16 +53,39 @@ class Change extends HTMLElement {
       changeWords(change, knownAt) + (change.reason ? `: ${change.reason}` : ""),
     );
     setAttribute(this.status, "data-status", change.status);
+    this.#showSteps(change, knownAt);
+    // Once all went well nobody reads the steps.
+    if (isNew) this.details.open = change.status !== "succeeded";
+    this.#showButtons(change, enabled);
+  }
+
+  #showSteps(change, knownAt) {
+    const { steps } = change;
     const progress = [progressWords(change), deadlineWords(change, knownAt)].filter(Boolean);
     setText(this.progress, progress.join(", "));
-    setAttribute(this.cancel, "hidden", !isOpen(change));
+    setAttribute(this.bar, "hidden", !isOpen(change) || steps.length < 2);
+    this.bar.max = Math.max(1, steps.length);
+    this.bar.value = steps.filter(({ status }) => status === "succeeded").length;
+    setAttribute(this.details, "hidden", steps.length === 0);
     const running = isOpen(change) ? Math.floor(knownAt / 250) : 0;
-    renderOnce(this.steps, JSON.stringify([change.steps, running]), () =>
-      stepLists(change.steps, knownAt),
+    renderOnce(this.steps, JSON.stringify([steps, running]), () =>
+      areMany(steps) ? notableSteps(steps, knownAt) : stepLists(steps, knownAt),
     );
+  }
+
+  #showButtons(change, enabled) {
+    setAttribute(this.cancel, "hidden", !isOpen(change));
+    setAttribute(this.cancel, "disabled", !enabled);
+    setAttribute(this.dismiss, "hidden", isOpen(change));
     // A press is under way: its mark is a child of the button.
     if (this.cancel.hasAttribute("data-sending")) return;
     setText(this.cancel, change.status === "waiting" ? "Stop waiting" : "Cancel the rest");
+  }
+
+  #dismiss() {
+    this.#dismissed.add(nameOf(this.change));
+    setAttribute(this.result, "hidden", true);
+    this.dispatchEvent(new CustomEvent("ph-dismissed", { bubbles: true }));
   }
 
   #cancel() {
@@ -69,6 +97,11 @@ class Change extends HTMLElement {
       }
     });
   }
+}
+
+/** Ids begin again when nothing was kept over a restart. */
+function nameOf({ id, started_at }) {
+  return `${id} ${started_at}`;
 }
 
 /** "times out in 12 s", while a change with a deadline runs. */

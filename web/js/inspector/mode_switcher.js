@@ -1,175 +1,153 @@
-/** <ph-mode-switcher>: buttons for lifecycle and mode, each mode with its first blocker.
+/** <ph-mode-switcher>: the modes of a part as one radio group, each with its first blocker.
  *
- * A mode that cannot be entered is disabled; a blocker that does not refuse is only a warning. What
- * is behind the first blocker, and the conditions of a mode, can be opened beside it. There a request
- * can be sent that waits until the conditions are met; the server rejects it if waiting cannot help.
+ * Few short names stand side by side, as one control; others below each other. The arrow keys only
+ * move: since a mode moves the robot, it is chosen by Space, Enter or a press. A mode that cannot be
+ * entered stays in reach; a press on it opens why not. There a request can be sent that waits until
+ * the conditions are met; the server rejects it if waiting cannot help.
  *
- * Dispatches `ph-change` with the change that the server started, or `ph-problem`; `ph-plan` with the
- * plan of it, if that is to be seen first.
+ * Dispatches `ph-ask` with the `{button, what, body}` of a request.
  */
 
-import { partPath, request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { nearestWords, reasonTree } from "/web/js/base/reasons.js";
-import { requestPlan } from "/web/js/inspector/part_watch.js";
-import { whileSending } from "/web/js/base/sending.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
+import { modeName } from "/web/js/base/words.js";
 
 const WAIT_S = 600;
-const TRANSITIONS = ["configure", "activate", "deactivate", "cleanup", "shutdown"];
+/** Characters that fit beside each other. */
+const LINE = 36;
+const STEPS = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 };
 
 class ModeSwitcher extends HTMLElement {
+  #modes = new Map();
+  #key = "";
+
   connectedCallback() {
-    if (this.fields) return;
-    this.transitions = new Map();
-    const lifecycle = el("div", { class: "buttons", role: "group", "aria-label": "Lifecycle" });
-    for (const name of TRANSITIONS) {
-      const button = this.#transitionButton(name);
-      this.transitions.set(name, button);
-      lifecycle.append(button);
-    }
-    this.modes = new Map();
-    this.modeList = el("div", { class: "modes", role: "group", "aria-label": "Mode" });
-    this.modeTitle = el("h3", {}, "Mode");
-    this.planFirst = el("input", { type: "checkbox", role: "switch" });
-    const planFirst = el("label", { class: "switch" }, this.planFirst, "Show the plan first");
-    this.fields = el(
-      "fieldset",
-      {},
-      planFirst,
-      this.modeTitle,
-      this.modeList,
-      el("h3", {}, "Lifecycle"),
-      lifecycle,
-    );
-    this.append(this.fields);
+    if (this.group) return;
+    this.group = el("div", { class: "modes", role: "radiogroup", "aria-label": "Mode" });
+    this.group.addEventListener("keydown", (event) => this.#move(event));
+    this.append(this.group);
   }
 
-  show({ part, transitions, modes, enabled }) {
+  /** Show modes as `GET P/modes` has them; `isLive`: what they say of the part is of now. */
+  show({ part, modes, enabled, isLive, signals }) {
     this.subject = part;
-    this.isLive = enabled;
-    setAttribute(this.fields, "disabled", !enabled);
-    for (const [name, button] of this.transitions) {
-      const off = !transitions.includes(name);
-      if (name === "shutdown") button.disabled = off;
-      else setAttribute(button, "disabled", off);
-    }
-    setAttribute(this.modeTitle, "hidden", modes.length === 0);
-    const key = modes.map((item) => item.mode).join("\n");
-    if (this.key !== key) this.#build(key, modes);
-    for (const item of modes) this.#fill(item);
-  }
-
-  /** A finalized part cannot be restarted, so shutdown needs a long press. */
-  #transitionButton(name) {
-    if (name === "shutdown") {
-      const shutdown = el("ph-hold-button", { label: "shutdown (hold)" });
-      shutdown.addEventListener("ph-held", () =>
-        this.#ask(shutdown.button, "state", { transition: name }),
-      );
-      return shutdown;
-    }
-    const button = el("button", { type: "button" }, name);
-    button.addEventListener("click", () => this.#ask(button, "state", { transition: name }));
-    return button;
+    this.words = (text) => plainMessage(text, signals);
+    this.isLive = isLive;
+    const key = modes.map(({ mode }) => mode).join("\n");
+    if (this.#key !== key) this.#build(key, modes);
+    for (const item of modes) this.#fill(item, enabled);
+    this.#chooseStop();
   }
 
   #build(key, modes) {
-    this.key = key;
-    this.modes.clear();
-    for (const { mode } of modes) {
-      const blocker = el("p", { class: "blocker", id: `blocker-${mode}` });
-      const mark = el("span", { class: "mark" });
-      const button = el("button", { type: "button" }, el("span", {}, mode), mark);
-      button.addEventListener("click", () => this.#ask(button, "mode", { mode }));
-      const details = this.#details(mode);
-      const item = el("div", { class: "mode" }, button, blocker, details.whole);
-      this.modes.set(mode, { button, mark, blocker, details, item });
-    }
-    this.modeList.replaceChildren(...[...this.modes.values()].map(({ item }) => item));
+    this.#key = key;
+    this.#modes.clear();
+    setAttribute(this.group, "data-columns", columnsFor(modes.map(({ mode }) => modeName(mode))));
+    for (const { mode } of modes) this.#modes.set(mode, this.#made(mode));
+    this.group.replaceChildren(...[...this.#modes.values()].map(({ item }) => item));
   }
 
-  /** Built only while it is open, since a tree of reasons may be long. */
-  #details(mode) {
+  #made(mode) {
+    const mark = el("span", { class: "mark" });
+    const name = el("span", { class: "mode-name" }, modeName(mode));
+    const button = el("button", { type: "button", role: "radio", title: mode }, name, mark);
+    const blocker = el("span", { class: "blocker", id: `blocker-${mode}` });
     const [title, content] = [el("span"), el("div")];
-    const summary = el("summary", {}, title, el("span", { class: "visually-hidden" }, ` ${mode}`));
-    const whole = el("details", { class: "reasons-of" }, summary, content);
-    const body = { mode, wait_for_s: WAIT_S };
-    const wait = (button) => this.#send(button, "mode", body);
-    const details = { whole, title, content, wait, item: null };
-    whole.addEventListener("toggle", () => fillDetails(details));
-    return details;
+    const of = el("span", {}, ` ${modeName(mode)}`);
+    const summary = el("summary", {}, el("span", { class: "why-not" }, title, of), blocker);
+    const whole = el("details", { class: "unfold" }, summary, content);
+    const line = { mode, button, mark, blocker, whole, title, content, item: null };
+    line.item = el("div", { class: "mode" }, button, whole);
+    button.addEventListener("click", () => this.#press(line));
+    // Built only while it is open, since a tree of reasons may be long.
+    whole.addEventListener("toggle", () => this.#fillDetails(line));
+    return line;
   }
 
-  #fill(shown) {
+  #press(line) {
+    const { button, whole, mode } = line;
+    if (button.getAttribute("aria-disabled") !== "true") this.#ask(button, { mode });
+    else if (!whole.hidden) whole.open = true;
+  }
+
+  #ask(button, body) {
+    const detail = { button, what: "mode", body };
+    this.dispatchEvent(new CustomEvent("ph-ask", { bubbles: true, detail }));
+  }
+
+  #fill(shown, enabled) {
     const { mode, can_enter, can_stay, blockers } = shown;
-    const { button, mark, blocker, details } = this.modes.get(mode);
+    const line = this.#modes.get(mode);
     const { actual, target } = this.subject;
     const isActual = actual.mode === mode && actual.state === "active";
     const isTarget = target?.mode === mode;
-    setAttribute(button, "disabled", !can_enter);
-    setAttribute(button, "aria-pressed", String(isActual));
-    setAttribute(button, "aria-describedby", blockers.length ? blocker.id : null);
+    setAttribute(line.button, "disabled", !enabled);
+    setAttribute(line.button, "aria-disabled", can_enter ? null : "true");
+    setAttribute(line.button, "aria-checked", String(isActual));
+    setAttribute(line.button, "data-target", isTarget);
+    setAttribute(line.button, "aria-describedby", blockers.length ? line.blocker.id : null);
     const here = this.isLive ? "actual" : "was actual";
     const stays = can_stay === false ? ", cannot stay" : "";
-    setText(mark, `${isActual ? here : isTarget ? "target" : ""}${stays}`.replace(/^, /, ""));
-    // What refuses comes first: it is why the button is disabled.
+    setText(line.mark, `${isActual ? here : isTarget ? "target" : ""}${stays}`.replace(/^, /, ""));
+    // What refuses comes first: it is why the mode cannot be entered.
     const sorted = [...blockers].sort((a, b) => refuses(b) - refuses(a));
     const [first, ...others] = sorted;
     const more = others.length ? ` (and ${others.length} more)` : "";
-    setText(blocker, first ? `${can_enter ? "⚠ " : ""}${nearestWords(first)}${more}` : "");
-    setAttribute(blocker, "data-advisory", can_enter);
-    details.item = { ...shown, blockers: sorted };
-    fillDetails(details);
+    setText(line.blocker, first ? `${can_enter ? "⚠ " : ""}${this.words(nearestWords(first))}${more}` : "");
+    setAttribute(line.blocker, "data-advisory", can_enter);
+    line.shown = { ...shown, blockers: sorted };
+    this.#fillDetails(line);
   }
 
-  #ask(button, what, body) {
-    if (!this.planFirst.checked) return this.#send(button, what, body);
-    const path = `${partPath(this.subject)}/${what}`;
-    return this.#whileAsking(button, async () =>
-      this.#emit("ph-plan", await requestPlan({ path, body })),
-    );
+  #fillDetails({ whole, title, content, shown, mode }) {
+    const { can_enter, blockers, requires = [], invariants = [] } = shown;
+    setAttribute(whole, "hidden", blockers.length + requires.length + invariants.length === 0);
+    setText(title, blockers.length === 0 ? "Conditions of" : can_enter ? "Warning for" : "Why not");
+    if (!whole.open) return;
+    renderOnce(content, JSON.stringify([can_enter, blockers, requires, invariants]), () => [
+      ...(blockers.length ? [reasonTree(blockers, this.words)] : []),
+      ...(can_enter ? [] : [this.#waitButton(mode)]),
+      ...conditionList("Required to enter", requires),
+      ...conditionList("Required to enter and to stay", invariants),
+    ]);
   }
 
-  #send(button, what, body) {
-    const path = `${partPath(this.subject)}/${what}`;
-    return this.#whileAsking(button, async () =>
-      this.#emit("ph-change", await request("POST", path, body)),
-    );
+  #waitButton(mode) {
+    const words = `Enter as soon as it may, within ${WAIT_S / 60} min`;
+    const button = el("button", { type: "button", class: "small" }, words);
+    button.addEventListener("click", () => this.#ask(button, { mode, wait_for_s: WAIT_S }));
+    return button;
   }
 
-  #whileAsking(button, act) {
-    return whileSending(button, async () => {
-      try {
-        await act();
-      } catch (error) {
-        this.#emit("ph-problem", error.problem);
-      }
-    });
+  /** One radio of the group is a stop of Tab: the one with the focus, else the actual, else the first. */
+  #chooseStop() {
+    const buttons = [...this.#modes.values()].map(({ button }) => button);
+    const stop =
+      buttons.find((button) => button === document.activeElement) ??
+      buttons.find((button) => button.getAttribute("aria-checked") === "true") ??
+      buttons[0];
+    for (const button of buttons) setAttribute(button, "tabindex", button === stop ? 0 : -1);
   }
 
-  #emit(name, detail) {
-    this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
+  #move(event) {
+    const buttons = [...this.#modes.values()].map(({ button }) => button);
+    const at = buttons.indexOf(event.target);
+    const ends = { Home: 0, End: buttons.length - 1 };
+    const to = ends[event.key] ?? (at + STEPS[event.key] + buttons.length) % buttons.length;
+    if (at < 0 || !(to >= 0)) return;
+    event.preventDefault();
+    buttons[to].focus();
+    this.#chooseStop();
   }
 }
 
-function fillDetails({ whole, title, content, wait, item }) {
-  const { can_enter, blockers, requires = [], invariants = [] } = item ?? { blockers: [] };
-  setAttribute(whole, "hidden", blockers.length + requires.length + invariants.length === 0);
-  setText(title, blockers.length === 0 ? "Conditions" : can_enter ? "Why the warning" : "Why not");
-  if (!whole.open) return;
-  renderOnce(content, JSON.stringify([can_enter, blockers, requires, invariants]), () => [
-    ...(blockers.length ? [reasonTree(blockers)] : []),
-    ...(can_enter ? [] : [waitButton(wait)]),
-    ...conditionList("Required to enter", requires),
-    ...conditionList("Required to enter and to stay", invariants),
-  ]);
-}
-
-function waitButton(wait) {
-  const words = `Enter as soon as it may, within ${WAIT_S / 60} min`;
-  const button = el("button", { type: "button" }, words);
-  button.addEventListener("click", () => wait(button));
-  return button;
+/** In how many columns names stand; more than one makes them one control. */
+function columnsFor(names) {
+  const longest = Math.max(0, ...names.map((name) => name.length));
+  if (names.length > 4) return 1;
+  if (names.length * longest <= LINE) return Math.max(1, names.length);
+  return names.length % 2 === 0 && 2 * longest <= LINE ? 2 : 1;
 }
 
 function conditionList(title, conditions) {

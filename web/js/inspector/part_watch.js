@@ -1,13 +1,14 @@
 /** Loads what the stream does not carry of the selected part.
  *
- * That is the available transitions and modes, what blocks them, and the progress of its last change;
- * while someone looks at them, also why the part is not where it should be, and the plan of a request.
+ * That is the available transitions and modes, what blocks them, the parameters of a node, and the
+ * progress of its last change; while someone looks at them, also why the part is not where it should
+ * be, and the plan of a request.
  */
 
 import { partPath, request } from "/web/js/base/api.js";
 import { isOpen } from "/web/js/base/words.js";
 
-// One load is up to five requests, so a burst of events must not cause a burst of loads.
+// One load is up to six requests, so a burst of events must not cause a burst of loads.
 const PAUSE_MS = 500;
 
 /** Ask for the plan of a request; it has the `path` and `body` of that besides.
@@ -24,6 +25,10 @@ export class PartWatch {
   transitions = [];
   modes = [];
   change = null;
+  /** Of a node; null: it is a system, or they are not known yet. */
+  parameters = null;
+  /** Whether there was an answer about the part. */
+  isLoaded = false;
   /** Null unless `explain` asked for it. */
   why = null;
   /** What `requestPlan` returned, and null once it is to be forgotten. */
@@ -43,7 +48,8 @@ export class PartWatch {
   async select(part) {
     this.part = part;
     this.transitions = this.modes = [];
-    this.change = this.why = this.plan = null;
+    this.change = this.why = this.plan = this.parameters = null;
+    this.isLoaded = false;
     this.#changeId = part.change;
     this.#changed();
     this.refresh();
@@ -116,8 +122,9 @@ export class PartWatch {
     const paths = [`${path}/state`, `${path}/modes`];
     const isKnown = this.change?.id === this.#changeId && !isOpen(this.change ?? {});
     if (this.#changeId && !isKnown) paths.push(`/changes/${this.#changeId}`);
-    const [[state, modes, change], [why]] = await Promise.all([
+    const [[state, modes, change], [parameters], [why]] = await Promise.all([
       this.#answers(paths),
+      this.#answers(part.kind === "node" ? [`${path}/parameters`] : []),
       this.#answers(this.#isExplained ? [`${path}/why`] : []),
       this.#renewPlan(),
     ]);
@@ -125,6 +132,8 @@ export class PartWatch {
     if (this.#isExplained) this.why = why?.blockers ? why : this.why;
     this.transitions = state.available_transitions ?? this.transitions;
     this.modes = modes.items ?? this.modes;
+    this.parameters = parameters?.items ?? this.parameters;
+    this.isLoaded ||= Boolean(modes.items);
     if (change?.id && change.id === this.#changeId) this.change = change;
     this.#changed();
   }

@@ -4,7 +4,7 @@
  */
 
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
-import { stepLists } from "/web/js/base/step_list.js";
+import { areMany, notableSteps, stepLists } from "/web/js/base/step_list.js";
 import { duration, requestWords } from "/web/js/base/words.js";
 
 class Plan extends HTMLElement {
@@ -26,7 +26,9 @@ class Plan extends HTMLElement {
     setText(this.heading, `Plan: ${requestWords(plan.request)} of ${plan.part}, not requested yet`);
     setText(this.sum, planWords(plan));
     setAttribute(this.apply, "disabled", !enabled);
-    renderOnce(this.steps, JSON.stringify(plan.steps), () => stepLists(plan.steps, 0));
+    renderOnce(this.steps, JSON.stringify(plan.steps), () =>
+      areMany(plan.steps) ? notableSteps(plan.steps, 0) : stepLists(plan.steps, 0),
+    );
     if (!isNew) return;
     this.heading.focus({ preventScroll: true });
     this.heading.scrollIntoView({ block: "center" });

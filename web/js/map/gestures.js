@@ -1,7 +1,6 @@
 /** Turns pointers, wheel and keys into calls of `pan(dx, dy)`, `zoom(factor, x, y)` and `fit()`.
  *
- * A mouse drags. On a touch screen two fingers move and zoom the map, and one finger scrolls the
- * page, so that the map does not capture scrolling.
+ * A mouse or one finger drags; two fingers move and zoom.
  */
 
 const STEP_PX = 40;
@@ -17,7 +16,7 @@ export function listen(canvas, { pan, zoom, fit }) {
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     pointers.set(event.pointerId, place(event));
-    if (event.pointerType !== "touch") canvas.setPointerCapture(event.pointerId);
+    canvas.setPointerCapture(event.pointerId);
   });
   canvas.addEventListener("pointermove", (event) => {
     const before = pointers.get(event.pointerId);
@@ -26,17 +25,11 @@ export function listen(canvas, { pan, zoom, fit }) {
     pointers.set(event.pointerId, now);
     const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1];
     if (other) pinch(other, before, now, { pan, zoom });
-    else if (event.pointerType !== "touch") pan(now.x - before.x, now.y - before.y);
+    else pan(now.x - before.x, now.y - before.y);
   });
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
     canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
   }
-  // Two fingers that both move down would scroll the page as well.
-  canvas.addEventListener(
-    "touchmove",
-    (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(),
-    { passive: false },
-  );
   canvas.addEventListener(
     "wheel",
     (event) => {

@@ -5,6 +5,8 @@ import { seen, toScreen } from "/web/js/map/view.js";
 const LEAST_GAP_PX = 64;
 const LONGEST_BAR_PX = 110;
 const EDGE_PX = 6;
+// Beside the name of the axis, so that no path that is fitted runs below it.
+const BAR_AT_PX = [56, 27];
 
 /** The largest of 1, 2, 5, 10, 20 ... that is at most `limit`. */
 export function roundStep(limit) {
@@ -50,8 +52,8 @@ export function drawGrid(context, view, ink) {
 
 export function drawScaleBar(context, view, ink) {
   const length = roundStep(LONGEST_BAR_PX / view.scale);
-  const [right, y] = [view.width - EDGE_PX - 4, 24];
-  const left = right - length * view.scale;
+  const [left, y] = BAR_AT_PX;
+  const right = left + length * view.scale;
   context.strokeStyle = ink.text;
   context.lineWidth = 1.5;
   context.beginPath();

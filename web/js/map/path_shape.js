@@ -16,6 +16,13 @@ export class PathShape {
     this.end = items.at(-1);
     this.pieces = [...pieces(this)];
     this.bounds = this.pieces.map(({ bounds }) => bounds).reduce(join, null);
+    /** Mean distance of neighbours, m. */
+    this.spacing_m = lengthOf(items) / (items.length - 1);
+  }
+
+  /** The piece that has that segment. */
+  pieceOf(segment) {
+    return this.pieces[Math.floor(segment / POINTS_OF_A_PIECE)];
   }
 
   /** The waypoint of that number; of a thinned path the next one that was kept. */

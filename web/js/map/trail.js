@@ -1,4 +1,4 @@
-/** Where the vehicle was in the last minutes, and the state that the system was in there. */
+/** Where the vehicle was in the last minutes, and what it did there. */
 
 import { include } from "/web/js/map/bounds.js";
 
@@ -12,7 +12,10 @@ const JUMP_M = 3;
 /** `runs` are lines of one state each; a Path2D of a run is counted from `origin`. */
 export class Trail {
   runs = [];
+  /** Changes with each place. */
   version = 0;
+  /** Changes when a run begins or is forgotten: all runs but the last one rest in between. */
+  settled = 0;
   #last = null;
   #lastAt = -Infinity;
 
@@ -26,7 +29,7 @@ export class Trail {
     if (!broken && apart < LEAST_STEP_M) return;
     const run = this.runs.at(-1);
     if (broken || !run) this.#begin(pose, state);
-    else if (run.state !== state || run.count >= PLACES_OF_A_RUN) this.#begin(this.#last, state);
+    else if (run.state !== state || run.places.length > PLACES_OF_A_RUN) this.#begin(this.#last, state);
     this.#extend(pose, at);
   }
 
@@ -34,22 +37,29 @@ export class Trail {
   clear() {
     this.runs = [];
     this.version += 1;
+    this.settled += 1;
     this.#last = null;
   }
 
+  /** The runs up to a moment, ms since 1970. */
+  until(at) {
+    const begun = this.runs.filter(({ places }) => places[0].at <= at);
+    return begun.map((run) => {
+      if (run.endAt <= at) return run;
+      const places = run.places.filter((place) => place.at <= at);
+      const cut = newRun(places[0], run.state, places[0].at);
+      for (const place of places.slice(1)) extend(cut, place, place.at);
+      return cut;
+    });
+  }
+
   #begin(place, state) {
-    const shape = new Path2D();
-    shape.moveTo(0, 0);
-    const origin = { x_m: place.x_m, y_m: place.y_m };
-    this.runs.push({ state, origin, shape, bounds: include(null, place), count: 0, endAt: 0 });
+    this.runs.push(newRun(place, state, this.#lastAt));
+    this.settled += 1;
   }
 
   #extend(pose, at) {
-    const run = this.runs.at(-1);
-    run.shape.lineTo(pose.x_m - run.origin.x_m, pose.y_m - run.origin.y_m);
-    run.bounds = include(run.bounds, pose);
-    run.count += 1;
-    run.endAt = at;
+    extend(this.runs.at(-1), pose, at);
     this.#last = pose;
     this.version += 1;
   }
@@ -58,6 +68,21 @@ export class Trail {
     while (this.runs.length > 0 && now - this.runs[0].endAt > KEPT_MS) {
       this.runs.shift();
       this.version += 1;
+      this.settled += 1;
     }
   }
+}
+
+function newRun({ x_m, y_m }, state, at) {
+  const shape = new Path2D();
+  shape.moveTo(0, 0);
+  const place = { x_m, y_m, at };
+  return { state, origin: place, shape, bounds: include(null, place), places: [place], endAt: at };
+}
+
+function extend(run, { x_m, y_m }, at) {
+  run.shape.lineTo(x_m - run.origin.x_m, y_m - run.origin.y_m);
+  run.bounds = include(run.bounds, { x_m, y_m });
+  run.places.push({ x_m, y_m, at });
+  run.endAt = at;
 }

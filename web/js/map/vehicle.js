@@ -8,6 +8,7 @@ const MIDDLE = (BACK + FRONT) / 2;
 const [WHEEL_LENGTH, WHEEL_WIDTH, HALF_TRACK] = [0.56, 0.2, 0.68];
 const SYMBOL_PX = 22;
 const LEAST_OUTLINE_PX = 18;
+const HEADING_PX = 14;
 
 /** Draw the vehicle; hollow where its pose is old. */
 export function drawVehicle(context, view, ink, { pose, steering_angle_rad, limits }, isOld) {
@@ -23,16 +24,29 @@ export function drawVehicle(context, view, ink, { pose, steering_angle_rad, limi
 }
 
 function drawSymbol(context, view, ink, fill) {
+  context.setLineDash([]);
   context.translate(MIDDLE * view.scale, 0);
   const half = SYMBOL_PX / 2;
   trace(context, [half, 0], [-half, -half * 0.75], [-half * 0.5, 0], [-half, half * 0.75]);
   paint(context, fill, ink.outline, 2);
 }
 
+/** A line ahead of the front tells the heading from afar. */
+function drawHeading(context, ink, px) {
+  context.beginPath();
+  context.moveTo(FRONT, 0);
+  context.lineTo(FRONT + HEADING_PX * px, 0);
+  context.lineWidth = 2 * px;
+  context.strokeStyle = ink.outline;
+  context.stroke();
+}
+
 /** In metres, x to the front and y to the left; the rotation is done already. */
 function drawOutline(context, view, ink, fill, steering, wheelbase) {
   context.scale(view.scale, -view.scale);
   const px = 1 / view.scale;
+  context.setLineDash([]);
+  drawHeading(context, ink, px);
   context.beginPath();
   context.roundRect(BACK, -HALF_WIDTH, FRONT - BACK, 2 * HALF_WIDTH, 0.3);
   context.globalAlpha = 0.85;

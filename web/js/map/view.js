@@ -8,7 +8,7 @@ const MIN_SCALE = 0.01;
 const MAX_SCALE = 200;
 const MARGIN_PX = 42;
 // A vehicle alone is shown in as much ground as this, m.
-const LEAST_EXTENT_M = 24;
+const LEAST_EXTENT_M = 14;
 const FAR_SIZES = 10;
 
 /** What is looked at before anything is known. */
@@ -66,7 +66,7 @@ export function isFar(bounds, { x_m, y_m }) {
 }
 
 /** Look at all of `bounds`; without any, at the origin. */
-export function fit(view, bounds) {
+export function fitted(view, bounds) {
   const { minX, minY, maxX, maxY } = bounds ?? { minX: 0, minY: 0, maxX: 0, maxY: 0 };
   const across = Math.max(1, view.width - 2 * MARGIN_PX);
   const down = Math.max(1, view.height - 2 * MARGIN_PX);

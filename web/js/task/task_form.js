@@ -1,13 +1,14 @@
 /** <ph-task-form>: a new task from a CSV of waypoints: choose or drop it, preview it, start it.
  *
- * Dispatches `ph-file` when a file was chosen, and `ph-preview` with the server's preview of it, or
- * with null when there is none any more.
+ * Dispatches `ph-preview` with the service's preview of a file, or with null when there is none any
+ * more, and `ph-started` when a task was started.
  */
 
 import { ProblemError, request, requestText } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { hintWords, problemLines } from "/web/js/base/problem.js";
 import { whileSending } from "/web/js/base/sending.js";
+import { currentTask } from "/web/js/base/store.js";
 import { controllerName, previewLines, waypointName } from "/web/js/base/task_words.js";
 import { linesOf, textOf } from "/web/js/base/text_file.js";
 
@@ -15,6 +16,7 @@ const UPLOAD_MS = 30_000;
 // More than the largest valid track; a video dropped by mistake is not even read.
 const MOST_BYTES = 32 * 2 ** 20;
 const LINE_SHOWN = 60;
+const FILE_WORDS = "x and y in m, and headings if there are any";
 const HEADINGS = {
   "": "what fits the path",
   rad: "radians",
@@ -31,6 +33,7 @@ class TaskForm extends HTMLElement {
   #tracks = [];
   #asked = 0;
   #busy = false;
+  #facts = { task: null, limits: null, enabled: false };
 
   connectedCallback() {
     this.controller = select({}, () => this.#look());
@@ -42,9 +45,11 @@ class TaskForm extends HTMLElement {
     this.columns.addEventListener("change", () => this.#look());
     this.columnsField = field("Columns", this.columns);
     this.example = primary(() => this.#drive());
+    this.exampleTitle = el("p", { class: "quiet" });
+    this.examples = el("div", { class: "examples" }, this.example, this.exampleTitle);
     this.start = primary(() => this.#start());
     this.looking = el("p", { class: "quiet", role: "status" });
-    this.away = el("button", { type: "button", onclick: () => this.#discard() }, "Discard");
+    this.away = el("button", { type: "button", onclick: () => this.discard() }, "Discard");
     this.found = el("div", { class: "preview", hidden: true });
     this.refused = el("div", { class: "problem", role: "alert", hidden: true });
     const [controller, speed] = [
@@ -54,38 +59,51 @@ class TaskForm extends HTMLElement {
     this.fields = el(
       "fieldset",
       {},
-      this.example,
-      this.#zone(),
       el("div", { class: "fields" }, controller, speed),
+      this.examples,
+      this.#zone(),
       this.headingField,
       this.columnsField,
       this.looking,
       this.refused,
       this.found,
-      el("div", { class: "buttons" }, this.start, this.away),
+      el("div", { class: "sheet-foot" }, this.start, this.away),
     );
     this.append(this.fields);
-    this.#takeDrops();
   }
 
-  set controllers(names) {
+  /** Request what can be chosen: controllers, and the tracks that come with the service. */
+  async load() {
+    const [tasks, tracks] = await Promise.all([
+      request("GET", "/tasks").catch(() => ({ controllers: [] })),
+      // Without example tracks there is no button for them.
+      request("GET", "/examples/tracks").catch(() => ({ items: [] })),
+    ]);
     const chosen = this.controller.value;
-    const named = names.map((name) => [name, controllerName(name)]);
+    const named = tasks.controllers.map((name) => [name, controllerName(name)]);
     this.controller.replaceChildren(...options(Object.fromEntries(named)));
-    if (names.includes(chosen)) this.controller.value = chosen;
+    if (tasks.controllers.includes(chosen)) this.controller.value = chosen;
+    this.#tracks = tracks.items;
+    this.#draw();
   }
 
-  set tracks(items) {
-    this.#tracks = items;
+  show(state, enabled) {
+    const task = currentTask(state);
+    const limits = state.vehicle?.limits;
+    this.#facts = { task, limits, enabled };
+    this.#draw();
   }
 
-  show({ task, vehicle, enabled }) {
+  #draw() {
+    const { task, limits, enabled } = this.#facts;
     setAttribute(this.fields, "disabled", !enabled);
     for (const button of [this.start, this.example]) setAttribute(button, "disabled", this.#busy);
-    if (vehicle?.limits) setAttribute(this.speed, "max", vehicle.limits.max_speed_mps);
+    if (limits) setAttribute(this.speed, "max", limits.max_speed_mps);
     const track = this.#track();
-    setAttribute(this.example, "hidden", !track || task !== null || this.#file !== null);
+    setAttribute(this.examples, "hidden", !track || task !== null || this.#file !== null);
     setText(this.example.firstChild, `Drive the example ${track?.name ?? ""}`);
+    setText(this.exampleTitle, track?.title ?? "");
+    setText(this.fileName, this.#file?.name ?? FILE_WORDS);
     const hint = this.#hints().join(" ");
     const asksHeading = hint.includes("?heading=") || this.heading.value !== "";
     setAttribute(this.headingField, "hidden", !asksHeading);
@@ -114,12 +132,13 @@ class TaskForm extends HTMLElement {
       "aria-label": "Choose a CSV",
       onchange: () => this.#chosen(),
     });
+    this.fileName = el("span", { class: "quiet" });
     return el(
       "label",
       { class: "drop" },
       this.choose,
       el("span", { class: "as-button" }, "Choose a CSV"),
-      el("span", { class: "quiet" }, "or drop one here or on the map: x and y in m, perhaps headings"),
+      this.fileName,
     );
   }
 
@@ -127,39 +146,19 @@ class TaskForm extends HTMLElement {
     return this.#tracks.find(({ name }) => name === "loop") ?? this.#tracks[0] ?? null;
   }
 
-  /** Otherwise a file dropped outside the drop zone would replace the page. */
-  #takeDrops() {
-    const carriesFile = ({ dataTransfer }) => dataTransfer?.types.includes("Files");
-    document.addEventListener("dragover", (event) => {
-      if (!carriesFile(event)) return;
-      event.preventDefault();
-      setAttribute(document.body, "data-dragging", true);
-    });
-    document.addEventListener("dragleave", ({ relatedTarget }) => {
-      if (relatedTarget === null) setAttribute(document.body, "data-dragging", false);
-    });
-    document.addEventListener("drop", (event) => {
-      setAttribute(document.body, "data-dragging", false);
-      if (!carriesFile(event)) return;
-      event.preventDefault();
-      if (!this.fields.disabled) this.#take(event.dataTransfer.files[0]);
-    });
-  }
-
   #chosen() {
     const [file] = this.choose.files;
-    if (file) this.#take(file);
+    if (file) this.take(file);
     // So that the same file can be chosen again after it was corrected.
     this.choose.value = "";
   }
 
-  async #take(file) {
-    this.#discard();
+  async take(file) {
+    this.discard();
     this.heading.value = "";
     this.columns.value = "";
     const taken = { name: file.name, text: null };
     this.#file = taken;
-    this.dispatchEvent(new CustomEvent("ph-file", { bubbles: true }));
     if (file.size > MOST_BYTES) return this.#refuse(`${file.name} is too large for a track.`);
     try {
       taken.text = textOf(await file.arrayBuffer());
@@ -188,9 +187,7 @@ class TaskForm extends HTMLElement {
   #start(startIndex = null, button = this.start) {
     return whileSending(button, async () => {
       const text = async () => this.#file.text;
-      const { answer, problem } = await this.#work(() => this.#submit(text, startIndex));
-      if (answer) this.#discard();
-      this.#problem = problem;
+      this.#end(await this.#work(() => this.#submit(text, startIndex)));
     });
   }
 
@@ -199,8 +196,18 @@ class TaskForm extends HTMLElement {
     return whileSending(button, async () => {
       const path = `/examples/tracks/${encodeURIComponent(this.#track().name)}`;
       const drive = () => this.#submit(() => requestText(path), startIndex);
-      this.#problem = (await this.#work(drive)).problem;
+      this.#end(await this.#work(drive));
     });
+  }
+
+  #end({ answer, problem }) {
+    if (answer) {
+      this.discard();
+      this.dispatchEvent(new CustomEvent("ph-started"));
+      return;
+    }
+    this.#problem = problem;
+    this.#draw();
   }
 
   #speedWords() {
@@ -223,7 +230,8 @@ class TaskForm extends HTMLElement {
     return button;
   }
 
-  #discard() {
+  /** Forget the file. */
+  discard() {
     this.#asked += 1;
     setText(this.looking, "");
     this.#file = null;
@@ -233,6 +241,7 @@ class TaskForm extends HTMLElement {
 
   #show(preview) {
     this.#preview = preview;
+    this.#draw();
     this.dispatchEvent(new CustomEvent("ph-preview", { bubbles: true, detail: preview }));
   }
 
@@ -263,6 +272,7 @@ class TaskForm extends HTMLElement {
       return { answer: null, problem: error.problem };
     } finally {
       this.#busy = false;
+      this.#draw();
     }
   }
 
@@ -288,7 +298,7 @@ class TaskForm extends HTMLElement {
       return el("li", { class: "warning" }, `⚠ ${message}${place}${todo}`);
     });
     return [
-      el("h3", {}, `Preview of ${this.#file.name}`),
+      el("h3", {}, "Preview"),
       el("ul", {}, ...lines.map((line) => el("li", {}, line)), ...warnings),
     ];
   }

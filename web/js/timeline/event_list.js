@@ -1,6 +1,7 @@
 /** <ph-event-list>: events, newest first; lines mark missing events and restarts.
  *
- * Earlier events are loaded at its end, over restarts of the service.
+ * Earlier events are loaded at its end, over restarts of the service. What an event follows from is
+ * asked for when somebody wants to know; its time shows that moment in all panels.
  */
 
 import { request } from "/web/js/base/api.js";
@@ -8,6 +9,7 @@ import { el } from "/web/js/base/dom.js";
 import { whileSending } from "/web/js/base/sending.js";
 import { emptyState, firstEventId } from "/web/js/base/store.js";
 import { timeAndDay, timeOfDay } from "/web/js/base/words.js";
+import { causesOf } from "/web/js/timeline/causes.js";
 
 const SHOWN = 50;
 const LOADED = 200;
@@ -17,6 +19,8 @@ class EventList extends HTMLElement {
   #state = emptyState();
   #lines = new Map();
   #shown = SHOWN;
+  #isSeen = false;
+  #isDue = false;
 
   connectedCallback() {
     this.details = el("input", { type: "checkbox", role: "switch" });
@@ -27,21 +31,25 @@ class EventList extends HTMLElement {
     });
     this.earlier = el("button", { class: "small", hidden: true }, "Earlier");
     this.failure = el("p", { class: "hint", role: "status" });
+    const details = el("label", { class: "switch" }, this.details, el("span", {}, "Show details"));
     this.append(
-      el("label", { class: "switch" }, this.details, el("span", {}, "Show details")),
+      el("div", { class: "event-bar" }, details, this.earlier, this.failure),
       this.list,
-      this.earlier,
-      this.failure,
     );
     this.details.addEventListener("change", () => this.#render());
     this.earlier.addEventListener("click", () => this.#showEarlier());
     this.list.addEventListener("scroll", () => this.#scrolled());
+    new IntersectionObserver(([{ isIntersecting }]) => {
+      this.#isSeen = isIntersecting;
+      if (isIntersecting && this.#isDue) this.#render();
+    }).observe(this);
   }
 
-  update({ state }) {
-    const isKnown = this.#state.events === state.events;
-    this.#state = state;
-    if (!isKnown) this.#render();
+  /** The list now, also of a moment: what happened does not change. */
+  update({ live }) {
+    this.#isDue ||= this.#state.events !== live.events;
+    this.#state = live;
+    if (this.#isDue && this.#isSeen) this.#render();
   }
 
   #scrolled() {
@@ -82,11 +90,13 @@ class EventList extends HTMLElement {
   }
 
   #render() {
+    this.#isDue = false;
     const wanted = this.#wanted();
     const lines = new Map();
     for (const line of wanted.slice(-this.#shown))
       lines.set(line, this.#lines.get(line) ?? makeLine(line));
     this.#lines = lines;
+    this.list.toggleAttribute("data-details", this.details.checked);
     this.#keepPlace(() => this.list.replaceChildren(...[...lines.values()].reverse()));
     this.earlier.hidden = wanted.length <= this.#shown && !this.#hasEarlier();
   }
@@ -98,8 +108,10 @@ class EventList extends HTMLElement {
     const isBelow = (line) => line.getBoundingClientRect().bottom > top;
     const read = list.scrollTop > 0 ? [...list.children].find(isBelow) : undefined;
     const place = read?.getBoundingClientRect().top;
+    const focused = list.contains(document.activeElement) ? document.activeElement : null;
     render();
     if (read?.isConnected) list.scrollTop += read.getBoundingClientRect().top - place;
+    if (focused?.isConnected && focused !== document.activeElement) focused.focus({ preventScroll: true });
   }
 }
 
@@ -136,13 +148,16 @@ function isNotable(event) {
 
 function makeLine(event) {
   if (event.note) return el("li", { class: event.isRestart ? "restart" : "gap" }, event.note);
-  return el(
-    "li",
-    { "data-kind": event.kind },
-    el("time", { datetime: event.at, title: event.at }, timeOfDay(event.at)),
-    el("span", { class: "event-words" }, event.words),
-    el("span", { class: "event-kind" }, event.kind),
+  const line = el("li", { "data-kind": event.kind });
+  const time = el("time", { datetime: event.at, title: event.at }, timeOfDay(event.at));
+  const show = () => line.dispatchEvent(new CustomEvent("ph-show-moment", { bubbles: true, detail: { at: Date.parse(event.at) } }));
+  const name = `Show ${timeOfDay(event.at)} in all panels`;
+  line.append(
+    el("button", { type: "button", class: "event-time", title: name, onclick: show }, time),
+    el("span", { class: "event-words" }, event.words, " ", el("span", { class: "event-kind" }, event.kind)),
   );
+  if (event.cause !== null) line.append(...causesOf(event));
+  return line;
 }
 
 customElements.define("ph-event-list", EventList);

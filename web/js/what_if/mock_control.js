@@ -2,6 +2,7 @@
 
 import { request } from "/web/js/base/api.js";
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
+import { makeInput, makeSwitch } from "/web/js/what_if/control.js";
 
 const MIN_GAP_MS = 100;
 const REST_MS = 800;
@@ -17,15 +18,14 @@ class MockControl extends HTMLElement {
   /** Build the control for one signal. */
   open(signal, { label, control }) {
     this.#signal = signal;
-    this.input = control ? makeInput(control, label) : null;
+    this.input = makeInput(control, label);
     this.publishing = makeSwitch("Publishing", `${label}: publishing`);
     this.problem = el("p", { class: "problem", role: "alert", hidden: true });
-    this.fields = el("fieldset", {}, this.input?.node ?? null, this.publishing.node);
+    this.fields = el("fieldset", {}, el("legend", {}, label), this.input.node, this.publishing.node);
     this.append(this.fields, this.problem);
     this.publishing.box.addEventListener("change", () =>
       this.#ask({ publishing: this.publishing.box.checked }),
     );
-    if (!this.input) return;
     const field = this.input.field;
     field.addEventListener("input", () => this.#ask({ value: this.input.read() }));
     if (control.kind !== "range") return;
@@ -42,9 +42,9 @@ class MockControl extends HTMLElement {
     if (this.#mock !== mock) {
       this.#mock = mock;
       this.publishing.box.checked = mock.publishing;
-      this.input?.write(mock.value);
+      this.input.write(mock.value);
     }
-    if (this.publishing.box.checked && signal.value !== null) this.input?.write(signal.value);
+    if (this.publishing.box.checked && signal.value !== null) this.input.write(signal.value);
   }
 
   /** Send the newest setting, at most ten per second and one at a time. */
@@ -74,31 +74,6 @@ class MockControl extends HTMLElement {
     setText(this.problem, problem ?? "");
     setAttribute(this.problem, "hidden", problem === null);
   }
-}
-
-function makeInput(control, label) {
-  if (control.kind === "range") {
-    const { min, max, step } = control;
-    const field = el("input", { type: "range", min, max, step, "aria-label": `${label}: set` });
-    return {
-      node: field,
-      field,
-      read: () => field.valueAsNumber,
-      write: (value) => (field.valueAsNumber = value),
-    };
-  }
-  if (control.kind === "select") {
-    const options = control.options.map((option) => el("option", {}, option));
-    const field = el("select", { "aria-label": `${label}: set` }, ...options);
-    return { node: field, field, read: () => field.value, write: (value) => (field.value = value) };
-  }
-  const { node, box } = makeSwitch(control.label, `${label}: ${control.label.toLowerCase()}`);
-  return { node, field: box, read: () => box.checked, write: (value) => (box.checked = value) };
-}
-
-function makeSwitch(text, name) {
-  const box = el("input", { type: "checkbox", role: "switch", "aria-label": name });
-  return { box, node: el("label", { class: "switch" }, box, el("span", {}, text)) };
 }
 
 customElements.define("ph-mock-control", MockControl);

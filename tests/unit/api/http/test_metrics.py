@@ -18,7 +18,9 @@ from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.source_status import SourceStatus
 from service.supervisor import Supervisor
+from tests.support.carrier import CARRIER
 from tests.support.frames import event
+from tests.support.http_robot import http_robot
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.paths import straight
@@ -207,3 +209,16 @@ async def test_who_was_turned_away_is_counted_by_why(http: httpx.AsyncClient) ->
     assert await metric(http, "pilothouse_requests_refused_total", status="403") == 1
     assert await metric(http, "pilothouse_requests_refused_total", status="401") == 0
     assert await metric(http, "pilothouse_requests_refused_total", status="429") == 0
+
+
+async def test_the_metrics_count_the_reactions_by_how_they_stand() -> None:
+    name = "pilothouse_reactions"
+    async with http_robot(CARRIER) as robot:
+        await robot.http.post("/systems/carrier/mode", json={"mode": "__DEFAULT__"})
+        await robot.pass_time(1)
+        assert await metric(robot.http, name, state="idle") == 2
+        await robot.http.post("/signals/temperature", json={"value": 45.0})
+        await robot.pass_time(0.5)
+        assert await metric(robot.http, name, state="acting") == 1
+        assert await metric(robot.http, name, state="idle") == 1
+        assert await metric(robot.http, name, state="exhausted") == 0

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from api.http.page.assembled_page import assembled_page
 from api.streaming.client_input import STATE_TOPICS
 from api.streaming.encoder import StreamEncoder
 from domain.actor import NOBODY
@@ -56,6 +57,7 @@ def test_the_first_frame_says_what_to_expect(
         "newest": 0,
         "topics": ["parts", "signals"],
         "period_s": 0.05,
+        "page_version": assembled_page().version,
         "replay": None,
     }
 

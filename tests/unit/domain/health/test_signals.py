@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,6 +18,8 @@ from domain.health.signals import (
     default_signals,
 )
 from domain.inputs import SignalValue
+from domain.snapshot import Severity
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from tests.support.tables import text_table
 
@@ -145,6 +148,9 @@ def test_worse_is_judged_on_both_sides_where_both_are_errors() -> None:
 
 FACTS = {
     "battery_level": {
+        "label": "battery",
+        "error": "BATTERY_LOW",
+        "bad_side": "below",
         "threshold": 0.5,
         "clear_threshold": 0.5,
         "for_s": 0.0,
@@ -152,24 +158,35 @@ FACTS = {
         "min_on_s": 0.2,
         "clear_for_s": 0.0,
         "recovery": "automatic",
+        "severity": "critical",
         "minimum": 0.0,
         "maximum": 1.0,
     },
     "signal_strength": {
+        "label": "signal strength",
+        "lost_error": "SIGNAL_LOST",
+        "lost_bad_value": "NOT_CONNECTED",
         "lost_for_s": 10.0,
+        "low_error": "SIGNAL_LOW",
+        "low_bad_value": "LOW_SIGNAL",
         "low_for_s": 20.0,
         "stale_after_s": 2.0,
         "min_on_s": 0.2,
         "clear_for_s": 0.0,
         "recovery": "automatic",
+        "severity": "critical",
         "members": "CONNECTED, LOW_SIGNAL, NOT_CONNECTED",
     },
     "estop": {
+        "label": "e-stop",
+        "error": "ESTOP",
+        "bad_value": True,
         "for_s": 0.0,
         "stale_after_s": 2.0,
         "min_on_s": 0.2,
         "clear_for_s": 0.0,
         "recovery": "automatic",
+        "severity": "critical",
     },
 }
 
@@ -177,6 +194,13 @@ FACTS = {
 @pytest.mark.parametrize("signal", FACTS)
 def test_settings_can_be_shown_as_plain_values(signal: str) -> None:
     assert DEFAULTS[signal].facts() == FACTS[signal]
+
+
+def test_the_settings_tell_whose_error_it_is_unless_it_is_the_robots_own() -> None:
+    of_a_part = replace(DEFAULTS["temperature"], part=PartName("drive"), severity=Severity.URGENT)
+    facts = of_a_part.facts()
+    assert (facts["part"], facts["severity"]) == ("drive", "urgent")
+    assert "label" not in facts
 
 
 def declare(*bounds: Bound, spec: SignalSpec = VOLTAGE) -> SignalSettings:

@@ -52,7 +52,8 @@ async def test_whatever_is_not_named_as_open_is_not(path: str, guarded: HttpRobo
 
 
 @pytest.mark.parametrize(
-    "path", ["/", "/web/style.css", "/web/js/main.js", "/web/icon.svg", "/openapi.json", "/livez"]
+    "path",
+    ["/", "/web/style/base.css", "/web/js/main.js", "/web/icon.svg", "/openapi.json", "/livez"],
 )
 async def test_the_page_can_be_loaded_to_ask_for_the_token(path: str, guarded: HttpRobot) -> None:
     assert (await guarded.http.get(path)).status_code == 200

@@ -5,31 +5,15 @@ from typing import Any
 
 import pytest
 
+from tests.support.carrier import CARRIER
 from tests.support.http_robot import HttpRobot, http_robot
 
-ROBOT = """\
-carrier:
-  ros__parameters:
-    type: system
-    modes:
-      __DEFAULT__: {drive: active}
-      SLOW: {drive: active.SLOW}
-    reactions:
-      LIMP: {when: "temperature > 40", action: mode, target: active.SLOW}
-      HALT: {when: "battery_level < 0.3", action: hold, until: acknowledged}
-drive:
-  ros__parameters:
-    type: node
-    modes:
-      __DEFAULT__: {ros__parameters: {speed: 0.9}}
-      SLOW: {ros__parameters: {speed: 0.1}}
-"""
 LIMP = "/systems/carrier/reactions/LIMP"
 
 
 @pytest.fixture
 async def carrier() -> AsyncIterator[HttpRobot]:
-    async with http_robot(ROBOT) as robot:
+    async with http_robot(CARRIER) as robot:
         await robot.http.post("/systems/carrier/mode", json={"mode": "__DEFAULT__"})
         await robot.pass_time(1)
         yield robot

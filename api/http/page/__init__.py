@@ -1,0 +1,1 @@
+"""How the page reaches a browser: bundles of its modules and styles, by version, compressed."""

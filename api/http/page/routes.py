@@ -1,0 +1,50 @@
+"""The routes of the page: `/`, its bundles by version, and its files as they are written.
+
+Only files found at the start can be requested, so that no path can leave the package.
+"""
+
+from http import HTTPStatus
+
+from fastapi import APIRouter, Request, Response
+from starlette.exceptions import HTTPException
+
+from api.http.page.assembled_page import assembled_page, sources
+from api.http.page.front_page import FirstFrames, FrontPage
+from api.http.page.page_file import KEEP, PageFile, answer_with
+from api.http.route_policy import Permission, policy
+
+
+def page_routes(first_frames: FirstFrames) -> APIRouter:
+    """Return the routes of the page.
+
+    Args:
+        first_frames: What the page is to show before it is connected.
+    """
+    page = assembled_page()
+    front = FrontPage(page, first_frames)
+    router = APIRouter(include_in_schema=False)
+
+    @router.get("/")
+    @policy(Permission.READ_PUBLIC)
+    async def get_index(request: Request) -> Response:
+        return await front.answer(request)
+
+    # A page of another version is to notice, and not to run with what it does not know.
+    @router.get("/web/v/{version}/{name}")
+    @policy(Permission.READ_PUBLIC)
+    async def get_bundle(version: str, name: str, request: Request) -> Response:
+        file = page.files.get(name) if version == page.version else None
+        return answer_with(_there(file), request, KEEP)
+
+    @router.get("/web/{path:path}")
+    @policy(Permission.READ_PUBLIC)
+    async def get_file(path: str, request: Request) -> Response:
+        return answer_with(_there(sources().get(path)), request)
+
+    return router
+
+
+def _there(file: PageFile | None) -> PageFile:
+    if file is None:
+        raise HTTPException(HTTPStatus.NOT_FOUND)
+    return file

@@ -1,0 +1,81 @@
+/** The keys of the page. STOP has one that works everywhere, also while somebody types. */
+
+const KEPT = "pilothouse-plain-keys";
+const REGIONS = ["parts", "map", "selected", "signals", "log", "why"];
+const FOCUSABLE = "a[href], summary, button:enabled, input:enabled, select:enabled, [tabindex='0']";
+
+/** For the list of keys: `{key, what}`. */
+export const KEYS = [
+  { key: "Shift+Esc", what: "STOP" },
+  { key: "1", what: "Parts" },
+  { key: "2", what: "Map and task" },
+  { key: "3", what: "Selected part: modes" },
+  { key: "4", what: "Signals" },
+  { key: "5", what: "Timeline and log" },
+  { key: "6", what: "Why" },
+  { key: "Esc", what: "Close; back to live" },
+  { key: "?", what: "This list" },
+];
+
+/** Whether keys without a modifier do something; who dictates or shakes turns them off. */
+export function plainKeys() {
+  try {
+    return localStorage.getItem(KEPT) !== "off";
+  } catch {
+    return true;
+  }
+}
+
+export function setPlainKeys(isOn) {
+  try {
+    if (isOn) localStorage.removeItem(KEPT);
+    else localStorage.setItem(KEPT, "off");
+  } catch {
+    // Without storage there is no choice to keep.
+  }
+}
+
+/** Listen for keys and for the skip links. */
+export function listen() {
+  document.addEventListener("keydown", hear);
+  document.querySelector(".skip").addEventListener("click", (event) => {
+    event.preventDefault();
+    goTo(event.target.hash.slice(1));
+  });
+}
+
+/** Show a region, on a phone its tab, and put the focus into it. */
+export function goTo(name) {
+  const region = document.getElementById(name);
+  const tabs = region.dataset.tabs.split(" ");
+  if (!tabs.includes(document.body.dataset.tab)) tell("ph-tab", tabs[0]);
+  const isSeen = (node) => node.checkVisibility();
+  const row = [...region.querySelectorAll("[role=treeitem][tabindex='0']")].find(isSeen);
+  const target = row ?? [...region.querySelectorAll(FOCUSABLE)].find(isSeen) ?? region;
+  target.focus();
+}
+
+function hear(event) {
+  if (event.key === "Escape" && event.shiftKey) {
+    event.preventDefault();
+    document.querySelector("ph-stop-button").engage();
+    return;
+  }
+  const isPlain = !event.ctrlKey && !event.altKey && !event.metaKey;
+  if (event.defaultPrevented || !isPlain || isTyping(event.target)) return;
+  if (event.key === "Escape" && document.body.hasAttribute("data-moment")) tell("ph-moment", null);
+  if (!plainKeys()) return;
+  const region = REGIONS[Number(event.key) - 1];
+  if (event.key === "?") tell("ph-keys");
+  else if (region) goTo(region);
+  else return;
+  event.preventDefault();
+}
+
+function isTyping(target) {
+  return target.isContentEditable || target.matches("textarea, select, input:not([type=checkbox], [type=radio], [type=range])");
+}
+
+function tell(name, detail = undefined) {
+  document.dispatchEvent(new CustomEvent(name, { detail }));
+}
