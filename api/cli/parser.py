@@ -48,8 +48,8 @@ GROUPS: Mapping[str, Mapping[str, str]] = {
 _EXAMPLES = """\
 examples:
   pilothouse serve                        run with the built-in simulated robot
-  pilothouse serve robot.yaml --port 9000 supervise a model, with simulated nodes
-  pilothouse monitor                      watch it in this terminal
+  pilothouse serve robot.yaml --port 9000 supervise a model; nodes are simulated
+  pilothouse monitor                      watch it in this terminal; q ends that
   pilothouse stop dog on the track        stop the vehicle, and tell why
   pilothouse mode actuation PERFORMANCE   change a mode, and follow the steps
   pilothouse task track.csv               submit a task, and follow its progress
@@ -163,6 +163,7 @@ def make_parser(known: Mapping[str, str]) -> argparse.ArgumentParser:
         command = load(place)
         added = commands.add_parser(
             name,
+            help=command.about,
             description=command.text,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )

@@ -47,11 +47,18 @@ AREAS = {
 PER_UNIT = 10
 
 
-def crowded_robot(folder: Path, nodes: int = 300) -> tuple[str, ...]:
+CROWDED_FAULTS = {
+    "motion/unit_04/brake_002": "die",
+    "power/unit_08/fan_003": "error",
+    "motion/unit_10/imu_004": "die",
+}
+
+
+def crowded_robot(folder: Path, nodes: int = 300, *, faulty: bool = False) -> tuple[str, ...]:
     """Return arguments of `pilothouse serve` for nodes in namespaces and in nested systems.
 
     The robot `carrier` consists of areas, an area of units with ten nodes each; the node
-    `motion/shared_clock` is in the systems `motion` and `power`.
+    `motion/shared_clock` is in the systems `motion` and `power`. `faulty`: with CROWDED_FAULTS.
     """
     shared = "motion/shared_clock"
     units: dict[str, list[str]] = {}
@@ -79,9 +86,11 @@ def crowded_robot(folder: Path, nodes: int = 300) -> tuple[str, ...]:
         )
     lines += [f"{node}: {of_a_node}" for unit in units.values() for node in unit]
     lines.append(f"{shared}: {of_a_node}")
-    model = folder / f"crowded_{nodes}.yaml"
+    model, robot = folder / f"crowded_{nodes}.yaml", folder / "crowded_robot.yaml"
     model.write_text("\n".join(lines) + "\n")
-    return (str(model),)
+    faults = (f"  {node}: {{fault: {fault}}}\n" for node, fault in CROWDED_FAULTS.items())
+    robot.write_text(f"nodes:\n{''.join(faults)}")
+    return (str(model), *(("--robot", str(robot)) if faulty else ()))
 
 
 GUARDED = """\
@@ -137,3 +146,16 @@ def guarded_robot(folder: Path, fault: str | None = None) -> tuple[str, ...]:
     settings = f"nodes: {{{LONG}: {{fault: {fault}}}}}\n" if fault else ""
     robot.write_text(f"{settings}changes: {{transition_deadline_s: 2.0}}\n")
     return (str(model), "--robot", str(robot))
+
+
+def many_signals_robot(folder: Path, count: int = 200) -> tuple[str, ...]:
+    """Return arguments of `pilothouse serve` for the example with further signals, to be posted."""
+    robot = folder / "many_signals.yaml"
+    limits = "above: 80.0, clear_threshold: 70.0, unit: °C, stale_after_s: 0, severity: urgent"
+    signals = [
+        f"  motor_{number:03}_temperature: {{{limits}, error: HOT_{number:03}}}"
+        for number in range(count)
+    ]
+    mean = "of: motor_000_temperature, statistic: mean, window_s: 10.0, label: mean of motor 0"
+    robot.write_text("\n".join(["signals:", *signals, f"  motor_mean: {{{mean}}}", ""]))
+    return ("--robot", str(robot))

@@ -19,7 +19,12 @@ from typing import Any, Literal
 from playwright.sync_api import Browser, Page, WebSocketRoute, sync_playwright
 
 from tests.browser.earlier_runs import tell_earlier_runs
-from tests.browser.robots import guarded_robot, large_robot, troubled_robot
+from tests.browser.robots import (
+    guarded_robot,
+    large_robot,
+    many_signals_robot,
+    troubled_robot,
+)
 from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, free_port
 from tests.support.shared import PROJECT
 
@@ -30,7 +35,9 @@ LOST_MS = 3600
 
 Act = Callable[[Page, Service], None]
 MOBILE = PROJECT / "examples" / "mobile_robot"
-Robot = Literal["example", "troubled", "large", "guarded", "guarded_failing", "mobile"]
+Robot = Literal[
+    "example", "troubled", "large", "guarded", "guarded_failing", "mobile", "many_signals"
+]
 MANIPULATION = "/systems/mobile_manipulation"
 
 
@@ -118,7 +125,7 @@ def rolled_back(page: Page, service: Service) -> None:
 def waiting(page: Page, service: Service) -> None:
     show_part(page, "mobile_manipulation")
     service.request("PATCH", "/mock/battery_level", {"value": 0.21})
-    page.get_by_text("battery_level is 0.21").wait_for()
+    page.get_by_text("Battery is 0.21").first.wait_for()
     post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE", "wait_for_s": 600})
     page.get_by_role("button", name="Stop waiting").scroll_into_view_if_needed()
 
@@ -165,6 +172,44 @@ def reactions_seen(page: Page, service: Service) -> None:
 def low_battery(_: Page, service: Service) -> None:
     service.request("PATCH", "/mock/battery_level", {"value": 0.314})
     service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+
+
+def show_signals(page: Page) -> None:
+    page.evaluate("document.dispatchEvent(new CustomEvent('ph-tab', { detail: 'signals' }))")
+
+
+def signals_pending(page: Page, service: Service) -> None:
+    """An error, one that is coming and one that is stale; the first is open to its history."""
+    show_signals(page)
+    service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+    service.request("PATCH", "/mock/signal_strength", {"publishing": False})
+    for value in (44, 49, 53, 58, 61):
+        service.request("PATCH", "/mock/temperature", {"value": value})
+        page.wait_for_timeout(1500)
+    row = page.locator("ph-signal-list:not([only]) ph-signal-row").filter(has_text="Temperature")
+    row.get_by_role("button").first.click()
+    row.get_by_role("button", name="1 min", exact=True).click()
+    row.locator(".chart-line[d^=M]").wait_for(state="attached")
+
+
+def signals_200(page: Page, service: Service) -> None:
+    show_signals(page)
+    for number in range(0, 200, 3):
+        value = 90 if number in (42, 141) else 30 + number % 40
+        post(service, f"/signals/motor_{number:03}_temperature", {"value": value})
+    page.wait_for_timeout(2500)
+
+
+def what_if(page: Page, service: Service) -> None:
+    """A low battery and a node that dies, on a copy of a robot that drives."""
+    drive(service)
+    page.evaluate("document.dispatchEvent(new CustomEvent('ph-what-if', { detail: {} }))")
+    drawer = page.locator("ph-what-if")
+    drawer.locator(".what-if-outcome").wait_for(timeout=30_000)
+    drawer.get_by_role("slider", name="Simulated Battery: set").fill("0.42")
+    drawer.get_by_label("After how many seconds").fill("12")
+    drawer.get_by_role("button", name="Add", exact=True).click()
+    drawer.get_by_text("is unreachable").first.wait_for()
 
 
 def no_contact(page: Page, service: Service) -> None:
@@ -312,6 +357,9 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "reacting": ("mobile", reacting),
     "reactions": ("mobile", reactions_seen),
     "low_battery": ("example", low_battery),
+    "signals_pending": ("example", signals_pending),
+    "signals_200": ("many_signals", signals_200),
+    "what_if": ("example", what_if),
     "new_task": ("example", new_task),
     "task_preview": ("example", task_preview),
     "rejected": ("example", rejected),
@@ -336,6 +384,7 @@ def running_robot(kind: Robot) -> Iterator[Service]:
             "troubled": troubled_robot(folder),
             "large": large_robot(folder),
             "guarded": guarded_robot(folder),
+            "many_signals": many_signals_robot(folder),
             "mobile": (str(MOBILE / "model.yaml"), "--robot", str(MOBILE / "robot.yaml")),
             "guarded_failing": guarded_robot(folder, "fail"),
         }

@@ -1,4 +1,4 @@
-"""The list of errors, as an operator reads it and uses it."""
+"""Why: the errors of the robot, as an operator reads them and uses them."""
 
 import re
 from collections.abc import Iterator
@@ -49,7 +49,7 @@ def load(service: Service, *values_kg: float) -> None:
 
 
 def section(page: Page) -> Locator:
-    return page.locator("section.place-errors")
+    return page.locator("ph-why")
 
 
 def alarm(page: Page, name: str) -> Locator:
@@ -57,30 +57,83 @@ def alarm(page: Page, name: str) -> Locator:
 
 
 def shelve(page: Page, name: str, reason: str) -> None:
-    alarm(page, name).get_by_role("button", name="Shelve").first.click()
+    alarm(page, name).get_by_role("button", name="Shelve").click()
     alarm(page, name).get_by_label("Reason").fill(reason)
-    alarm(page, name).get_by_label("For").select_option("30 min")
-    alarm(page, name).locator("form").get_by_role("button", name="Shelve").click()
+    alarm(page, name).get_by_role("button", name="1 h").click()
 
 
-def test_a_robot_that_is_well_has_no_list(desktop: Page) -> None:
-    expect(section(desktop)).to_be_hidden()
+def test_a_robot_that_is_well_says_so_in_one_line(desktop: Page) -> None:
+    expect(section(desktop)).to_contain_text("Nothing is wrong")
+    expect(section(desktop).locator("ph-alarm")).to_have_count(0)
+
+
+def test_the_worst_is_open_and_says_what_it_means_and_what_can_be_done(
+    desktop: Page, service: Service
+) -> None:
+    load(service, 300)
+    worst = alarm(desktop, "OVERLOAD")
+    expect(worst).to_contain_text("Load 300 kg is above 250 kg")
+    expect(worst).to_contain_text("Critical: the task cannot go on")
+    expect(worst.locator(".age")).to_have_text(re.compile(r"^\d+ s$"))
+    expect(worst.locator("ph-sparkline")).to_be_visible()
+    expect(worst.get_by_role("button", name="Acknowledge (hold)")).to_be_visible()
+    expect(worst.get_by_role("button", name="Show on the timeline")).to_be_visible()
+
+
+def test_an_error_leads_to_the_moment_when_it_began(desktop: Page, service: Service) -> None:
+    load(service, 300)
+    desktop.evaluate(
+        """() => document.addEventListener("ph-show-moment", ({ detail }) => (window.at = detail.at))"""
+    )
+    alarm(desktop, "OVERLOAD").get_by_role("button", name="Show on the timeline").click()
+    since = error_of(service)["since_at"]
+    assert desktop.evaluate("(since) => window.at === Date.parse(since)", since)
+
+
+def test_who_selects_a_part_has_the_errors_closed_above_it_until_why_is_asked_for(
+    desktop: Page, service: Service
+) -> None:
+    load(service, 300)
+    opened = alarm(desktop, "OVERLOAD").locator("details").first
+    expect(opened).to_have_attribute("open", "")
+    desktop.get_by_role("treeitem").filter(has_text="drive_base").last.click()
+    expect(opened).not_to_have_attribute("open", "")
+    expect(alarm(desktop, "OVERLOAD")).to_contain_text("Load 300 kg is above 250 kg")
+    expect(desktop.locator("ph-part-panel h2")).to_be_in_viewport()
+    desktop.get_by_role("heading", level=1).click()
+    expect(opened).to_have_attribute("open", "")
+
+
+def test_a_critical_error_is_in_the_title_until_somebody_acknowledged_it(
+    desktop: Page, service: Service
+) -> None:
+    icon = desktop.locator("link[rel=icon]")
+    expect(icon).to_have_attribute("href", re.compile("icon.svg"))
+    load(service, 300)
+    expect(desktop).to_have_title("(1) ERROR · Pilothouse")
+    expect(icon).to_have_attribute("href", re.compile("icon_alarm.svg"))
+    address = icon.get_attribute("href")
+    assert desktop.evaluate("async (url) => (await fetch(url)).status", address) == 200
+    held = alarm(desktop, "OVERLOAD").get_by_role("button", name="Acknowledge (hold)")
+    held.click(delay=1200)
+    expect(desktop).to_have_title("ERROR · Pilothouse")
+    expect(icon).to_have_attribute("href", re.compile("icon.svg"))
 
 
 def test_an_error_that_is_over_stays_dimmed_until_somebody_has_seen_it(
     desktop: Page, service: Service, complaints: Complaints
 ) -> None:
     load(service, 300)
-    expect(alarm(desktop, "OVERLOAD")).to_contain_text("load 300 kg is above 250 kg")
-    expect(section(desktop).get_by_role("heading", name="Errors")).to_have_text("Errors (1)")
+    expect(alarm(desktop, "OVERLOAD")).to_contain_text("Load 300 kg is above 250 kg")
+    expect(section(desktop).get_by_role("heading", name="Why")).to_have_text("Why 1 wrong")
     load(service, 0)
     over = section(desktop).get_by_role("list", name=re.compile("over, and not acknowledged"))
-    expect(over.locator("ph-alarm")).to_contain_text("it is over")
+    expect(over.locator("ph-alarm")).to_contain_text("it is over; nobody has acknowledged it")
     expect(over.locator("ph-alarm")).to_have_attribute("data-state", "returned")
 
     alarm(desktop, "OVERLOAD").get_by_role("button", name="Acknowledge").click()
 
-    expect(section(desktop)).to_be_hidden()
+    expect(alarm(desktop, "OVERLOAD")).to_have_count(0)
     assert complaints.messages == []
 
 
@@ -93,7 +146,7 @@ def test_what_may_let_the_robot_go_on_needs_a_long_press(desktop: Page, service:
     held.click(delay=1200)
     expect(alarm(desktop, "OVERLOAD")).to_contain_text("acknowledged")
     load(service, 0)
-    expect(section(desktop)).to_be_hidden()
+    expect(alarm(desktop, "OVERLOAD")).to_have_count(0)
 
 
 def test_an_error_is_shelved_with_a_reason_and_announced_again(
@@ -125,7 +178,11 @@ def test_an_error_that_comes_and_goes_says_what_would_calm_it(
     desktop: Page, service: Service
 ) -> None:
     load(service, *(300, 0) * 3)
-    expect(alarm(desktop, "OVERLOAD")).to_contain_text(re.compile("clear_for_s: .* would calm it"))
+    expect(alarm(desktop, "OVERLOAD").locator(".tags")).to_contain_text("chattering")
+    alarm(desktop, "OVERLOAD").locator("summary").first.click()
+    expect(alarm(desktop, "OVERLOAD")).to_contain_text(
+        re.compile(r"it would be calm if it ended only after [\d.]+ s")
+    )
 
 
 def test_what_follows_from_an_error_is_folded_below_it(desktop: Page) -> None:
@@ -183,6 +240,7 @@ def test_the_list_fits_a_phone(phone: Page, service: Service) -> None:
     load(service, 300)
     expect(alarm(phone, "OVERLOAD")).to_be_visible()
     alarm(phone, "OVERLOAD").get_by_role("button", name="Shelve").click()
+    expect(alarm(phone, "OVERLOAD").get_by_label("Reason")).to_be_focused()
     width = phone.evaluate("document.documentElement.scrollWidth")
     assert width <= 360
     small = section(phone).evaluate(

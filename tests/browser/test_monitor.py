@@ -27,10 +27,6 @@ def stop(page: Page) -> Locator:
     return page.get_by_role("button", name=re.compile("^STOP"))
 
 
-def card(page: Page, name: str) -> Locator:
-    return page.locator("ph-signal-card").filter(has=page.get_by_role("heading", name=name))
-
-
 def hold(button: Locator, page: Page, milliseconds: int) -> None:
     button.hover()
     page.mouse.down()
@@ -121,63 +117,6 @@ def test_details_are_left_out_of_the_events_until_they_are_asked_for(
     expect(detail).to_have_count(0)
     desktop.get_by_role("switch", name="Show details").check()
     expect(detail).not_to_have_count(0)
-
-
-def test_a_battery_dragged_low_is_an_error_that_says_why_and_ends_when_it_is_full(
-    desktop: Page, complaints: Complaints
-) -> None:
-    slider = card(desktop, "Battery").get_by_role("slider")
-    box = slider.bounding_box()
-    assert box is not None
-    middle = box["y"] + box["height"] / 2
-    desktop.mouse.move(box["x"] + box["width"] * 0.9, middle)
-    desktop.mouse.down()
-    desktop.mouse.move(box["x"] + box["width"] * 0.3, middle, steps=15)
-    expect(sentence(desktop)).to_have_text(re.compile(r"^ERROR: battery \d+ % is below 50 %$"))
-    expect(card(desktop, "Battery")).to_contain_text("BATTERY_LOW")
-    desktop.mouse.move(box["x"] + box["width"] * 0.95, middle, steps=15)
-    desktop.mouse.up()
-    expect(sentence(desktop)).to_have_text("IDLE: no task")
-    assert complaints.messages == []
-
-
-def test_a_slider_that_is_dragged_asks_at_most_ten_times_a_second(desktop: Page) -> None:
-    slider = card(desktop, "Temperature").get_by_role("slider")
-    box = slider.bounding_box()
-    assert box is not None
-    middle = box["y"] + box["height"] / 2
-    asked: list[str] = []
-    desktop.on("request", lambda request: asked.append(request.method))
-    desktop.mouse.move(box["x"] + box["width"] * 0.3, middle)
-    desktop.mouse.down()
-    begin = time.monotonic()
-    for step in range(40):
-        desktop.mouse.move(box["x"] + box["width"] * (0.1 + step / 100), middle)
-        desktop.wait_for_timeout(25)
-    seconds = time.monotonic() - begin
-    desktop.mouse.up()
-    assert 5 <= asked.count("PATCH") <= 10 * seconds + 1
-
-
-def test_a_signal_that_is_no_longer_published_grows_old_and_is_called_stale(
-    desktop: Page, complaints: Complaints
-) -> None:
-    temperature = card(desktop, "Temperature")
-    temperature.get_by_role("switch", name="Temperature: publishing").click()
-    expect(temperature).to_contain_text("STALE")
-    expect(temperature).to_contain_text(re.compile(r"[234]\.\d s old"))
-    expect(sentence(desktop)).to_contain_text("ERROR")
-    assert complaints.messages == []
-
-
-def test_bad_gps_is_seen_coming_before_it_is_an_error(
-    desktop: Page, service: Service, complaints: Complaints
-) -> None:
-    service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
-    expect(card(desktop, "GPS accuracy")).to_contain_text(re.compile(r"GPS_LOST in 1\d s"))
-    expect(card(desktop, "GPS accuracy").get_by_role("progressbar")).to_be_visible()
-    expect(sentence(desktop)).to_have_text("IDLE: no task")
-    assert complaints.messages == []
 
 
 def test_stop_engages_at_one_press_and_only_a_long_press_releases_it(

@@ -67,7 +67,8 @@ def _ack(client: "ServiceClient", names: list[str], how: str, *, is_all: bool) -
         say_json({"items": [still[name] for name in wanted if name in still]})
         return Outcome.SUCCEEDED
     for name in wanted:
-        say(f"{name} is acknowledged; it is {still[name]['state'] if name in still else 'over'}")
+        end = "ends with its cause" if name in still else "is over"
+        say(f"{name} is acknowledged; it {end}")
     if not wanted:
         say("no error waits for it")
     return Outcome.SUCCEEDED

@@ -5,8 +5,8 @@ import argparse
 from api.cli.commands.command import Command, add_url, answered
 
 _TEXT = """\
-Watch a robot in this terminal until q or Ctrl-C: its state with reasons, systems
-and nodes with their targets, signals and task. Nothing is changed.
+Watch a robot in this terminal until q or Ctrl-C: its state with reasons, its
+systems and nodes with their targets, signals and task. Nothing is changed.
 
 Each part has a line: the target, then the actual state and mode; (*) marks
 inferred values. Lines that need attention are marked:

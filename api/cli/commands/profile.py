@@ -33,7 +33,7 @@ A run fails if something is not seen within 2 s after it was due, is seen before
 it, or if another error is raised. It counts as failed and is listed.
 
 examples:
-  pilothouse profile --runs 100 --trigger ESTOP       the e-stop only, some 3 min
+  pilothouse profile --runs 100 --trigger ESTOP       only the e-stop, 3 min
   pilothouse profile --plot                           all seven triggers
   pilothouse profile --analyse profile/runs.csv --format json
 

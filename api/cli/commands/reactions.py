@@ -66,8 +66,7 @@ def _run(options: argparse.Namespace) -> int:
             return list_reactions(items, options.format, say)
         wanted = [name for name, _ in options.arm] + options.ack
         if unknown := [name for name in wanted if _path(client, items, name) is None]:
-            known = [f"{item['part']}.{item['reaction']}" for item in items]
-            raise no_such("reaction", unknown[0], known)
+            raise no_such("reaction", unknown[0], [item["reaction"] for item in items])
         for name, how in options.arm:
             body = {"arm": how, "reason": options.reason}
             client.call("PATCH", str(_path(client, items, name)), body)

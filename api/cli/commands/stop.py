@@ -30,13 +30,13 @@ _NOT_KNOWN = "It is not known whether the stop was delivered. Use the hardware s
 
 _ABOUT = "stop the vehicle, and keep it stopped"
 _TEXT = f"""\
-Engage the emergency stop: speed 0 is commanded at once, and no task drives until
-`pilothouse release`. Then wait until the vehicle stands still, and tell its
-speed meanwhile.
+Engage the emergency stop: speed 0 is commanded at once, and nothing drives
+until `pilothouse release`. Then wait until the vehicle stands still, and tell
+its speed meanwhile.
 
-It is tried again until it is delivered, for {RETRY_S:g} s unless --retry says otherwise;
-each try is told. It needs nothing but the network, and goes past any proxy.
-All other words are the reason.
+It is tried again until it is delivered, for {RETRY_S:g} s unless --retry says
+otherwise; each try is told. It needs nothing but the network, and goes past any
+proxy. All other words are the reason.
 
 This is a software stop. It is not safety-rated, and replaces no hardware stop.
 
@@ -52,6 +52,7 @@ exit code: 0 the stop is engaged, whether or not the vehicle stands still yet;
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.usage = "pilothouse stop [REASON ...] [--url URL] [--retry S] [--wait S] [--format F]"
     parser.add_argument("reason", metavar="REASON", nargs="*", help="why; any number of words")
     add_url(parser, is_needed=False)
     # A value that is none does not keep the vehicle from being stopped.
@@ -73,10 +74,10 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--format",
-        metavar="{text,json}",
+        metavar="F",
         nargs="?",
         default="text",
-        help="default: text; json: {delivered, tries, took_s, standstill, speed_mps,"
+        help="text (default) or json: {delivered, tries, took_s, standstill, speed_mps,"
         " emergency_stop}",
     )
 

@@ -15,13 +15,14 @@ from api.terminal_text import say
 if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
 
-_ABOUT = "tell why the robot does not drive, or a part is not where it should be"
+_ABOUT = "tell why the robot does not drive, or why a part deviates"
 _TEXT = """\
-Tell why the robot does not drive: its errors and what holds it. With a system or
-node, tell why it is not where it should be. With a mode as well, tell whether a
-request for that mode would be accepted now, and what keeps the part from it.
+Tell why the robot does not drive: its errors, and what holds it. With a system
+or node, tell why that is not where it should be. With a mode as well, tell
+whether a request for it would be accepted now, and what keeps the part from it.
 
-Each reason stands above those that it follows from; a root cause has none below.
+Each reason stands above those that it follows from; a root cause has none
+below.
 
   pilothouse why
   pilothouse why actuation

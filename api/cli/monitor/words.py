@@ -1,5 +1,6 @@
 """Texts of the monitor for single values: pure functions."""
 
+import math
 from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
@@ -9,6 +10,14 @@ Json = Mapping[str, Any]
 UNKNOWN = "?"
 
 _FIVE_DIGITS = 1e4
+_MOST_DECIMALS = 6
+_DECIMALS: Mapping[str, int] = {
+    **dict.fromkeys(("mm", "ms", "W", "B", "kB", "MB"), 0),
+    **dict.fromkeys(("°C", "K", "cm", "s", "min", "°", "Hz", "1/s", "kg", "N", "Nm", "%", "GB"), 1),
+    **dict.fromkeys(("m", "km", "m/s", "rad/s", "V", "A", "bar"), 2),
+    "rad": 3,
+}
+"""Decimals of the units that one meets on robots, so that a number does not change its width."""
 
 
 def duration(seconds: float) -> str:
@@ -67,12 +76,21 @@ def _plain_value(signal: Json) -> str:
     if isinstance(value, str):
         return value.lower().replace("_", " ")
     if unit == "ratio":
-        return f"{figure(value * 100)} %"
-    return f"{figure(value)} {unit}".rstrip()
+        return f"{round(value * 100, 1):g} %"
+    return f"{figure(value, unit)} {unit}".rstrip()
 
 
-def figure(value: float) -> str:
-    """Return a number with as many digits as one can use: 1800.1, 0.012346, 123456."""
+def figure(value: float, unit: str) -> str:
+    """Return a number with the digits of its unit, more for a small one.
+
+    Five digits count where the unit is not known: 1800.1, 0.012346, 123456.
+    """
+    usual = _DECIMALS.get(unit)
+    if usual is not None and abs(value) < _FIVE_DIGITS:
+        is_small = 0 < abs(value) < 1
+        decimals = max(usual, 1 - math.floor(math.log10(abs(value)))) if is_small else usual
+        if decimals <= _MOST_DECIMALS:
+            return f"{value:.{decimals}f}"
     whole = f"{value:.0f}"
     return whole if abs(value) >= _FIVE_DIGITS else f"{value:.5g}"
 

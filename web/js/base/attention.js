@@ -1,7 +1,10 @@
 /** What the tab of the page shows while nobody looks at the page. */
 
+import { setAttribute } from "/web/js/base/dom.js";
 import { isGrave, isOn, isSilenced, isWaiting } from "/web/js/base/error_groups.js";
 
+const ALARM_ICON = "/web/icon_alarm.svg";
+let calmIcon = null;
 let counted = null;
 let count = 0;
 
@@ -19,7 +22,7 @@ export function unseenCritical(errors) {
 export function attention(errors) {
   const waiting = unseenCritical(errors);
   const link = document.querySelector("link[rel=icon]");
-  const [from, to] = waiting ? ["icon.svg", "icon_alarm.svg"] : ["icon_alarm.svg", "icon.svg"];
-  if (link.href.includes(`/${from}`)) link.href = link.href.replace(`/${from}`, `/${to}`);
+  calmIcon ??= link.getAttribute("href");
+  setAttribute(link, "href", waiting ? ALARM_ICON : calmIcon);
   return waiting ? `(${waiting}) ` : "";
 }

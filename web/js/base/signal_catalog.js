@@ -7,13 +7,29 @@ const FIGURE = new Intl.NumberFormat("en", {
   maximumFractionDigits: 0,
   roundingPriority: "morePrecision",
 });
+/** Decimals of the units that one meets on robots, so that a number does not change its width. */
+const DECIMALS = {
+  "°C": 1, K: 1, mm: 0, cm: 1, m: 2, km: 2, ms: 0, s: 1, min: 1, "m/s": 2, rad: 3, "rad/s": 2, "°": 1,
+  V: 2, A: 2, W: 0, Hz: 1, "1/s": 1, kg: 1, N: 1, Nm: 1, bar: 2, "%": 1, B: 0, kB: 0, MB: 0, GB: 1,
+};
+const LARGE = 1e4;
+const MOST_DECIMALS = 6;
 
-/** A number with as many digits as one can use: 1800.1, 0.012346, 123456. */
-export function figure(value) {
-  return FIGURE.format(value);
+/** A number with the digits of its unit, more for a small one; five that count without a known unit.
+ *
+ * 1800.1, 0.012346, 123456.
+ */
+export function figure(value, unit) {
+  const usual = DECIMALS[unit];
+  if (usual === undefined || Math.abs(value) >= LARGE) return FIGURE.format(value);
+  if (value === 0) return value.toFixed(usual);
+  const needed = 1 - Math.floor(Math.log10(Math.abs(value)));
+  const decimals = Math.abs(value) < 1 ? Math.max(usual, needed) : usual;
+  return decimals > MOST_DECIMALS ? FIGURE.format(value) : value.toFixed(decimals);
 }
 
-const percent = (value) => [figure(value * 100), "%"];
+/** "42.6 %", "90 %". */
+const percent = (value) => [String(Math.round(value * 1000) / 10), "%"];
 const fixed = (digits, unit) => (value) => [value.toFixed(digits), unit];
 const words = (value) => [String(value).toLowerCase().replaceAll("_", " "), ""];
 
@@ -69,7 +85,7 @@ function capitalised(text) {
 function plainly(value, unit) {
   if (typeof value === "boolean") return [value ? "yes" : "no", ""];
   if (typeof value !== "number") return words(value);
-  return unit === "ratio" ? percent(value) : [figure(value), unit ?? ""];
+  return unit === "ratio" ? percent(value) : [figure(value, unit), unit ?? ""];
 }
 
 /** A number can be set around its threshold, within its limits. */

@@ -1,14 +1,15 @@
 /** Texts on signals: pure functions. `api/cli/monitor/words.py` has the same rules. */
 
 import { describe } from "/web/js/base/signal_catalog.js";
-import { duration } from "/web/js/base/words.js";
+import { duration, modeName } from "/web/js/base/words.js";
 
 const SOON_OLD_MS = 5000;
 
-/** The value as `[text, unit]`; the stop is engaged whatever its signal says. */
+/** The value as `[text, unit, aside]`; the stop is engaged whatever its signal says. */
 export function valueWords(name, signal, emergencyStop) {
   const [text, unit] = signal.value === null ? ["?", ""] : describe(name, signal).show(signal.value);
-  return name === "estop" && emergencyStop?.engaged ? ["stop engaged", `(signal: ${text})`] : [text, unit];
+  const isStop = name === "estop" && emergencyStop?.engaged;
+  return isStop ? ["stop engaged", "", `signal: ${text}`] : [text, unit, ""];
 }
 
 /** How urgent a signal is: "error", "pending", "stale", "unknown" or "ok". */
@@ -51,4 +52,11 @@ export function ageWords({ received_at, stale, settings }, isLive, now) {
   const age = now - Date.parse(received_at);
   const limit = settings?.stale_after_s ? settings.stale_after_s * 500 : SOON_OLD_MS;
   return isLive && !stale && age < Math.max(limit, 1000) ? "" : `${duration(age)} old`;
+}
+
+/** A message with signals called by their labels, and modes as on the page. */
+export function plainMessage(message, signals) {
+  return message.replace(/[\w/]+/g, (word) =>
+    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : modeName(word),
+  );
 }

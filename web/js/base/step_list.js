@@ -6,6 +6,7 @@ import { duration } from "/web/js/base/words.js";
 /** A person reads so many steps; of more than these, only what is notable. */
 const MANY = 24;
 const NOTABLE = 12;
+const AT_ONCE_S = 0.05;
 const RUNNING = 3;
 const MARKS = { pending: "·", running: "…", succeeded: "✓", failed: "✕", timed_out: "✕" };
 
@@ -96,7 +97,8 @@ function timeWords({ status, started_at, ended_at, expected_s }, now) {
   const said = status.replaceAll("_", " ");
   if (!started_at) {
     const expected = status === "pending" && expected_s !== null;
-    return expected ? `about ${duration(expected_s * 1000)}` : said;
+    if (!expected) return said;
+    return expected_s < AT_ONCE_S ? "at once" : `about ${duration(expected_s * 1000)}`;
   }
   return `${said}, ${duration((ended_at ? Date.parse(ended_at) : now) - Date.parse(started_at))}`;
 }

@@ -69,10 +69,10 @@ class Trends {
   #running = 0;
 
   /** Return the trend of a signal, and request what was before the page was opened. */
-  of(name, signal, end) {
+  of(name, signal, end, hasHistory) {
     const trend = this.#trend(name);
     trend.learn(signal);
-    if (!this.#asked.has(name)) {
+    if (hasHistory && !this.#asked.has(name)) {
       this.#asked.add(name);
       this.#waiting.push([name, signal, end]);
       this.#next();
@@ -152,9 +152,11 @@ export function hearTrends({ live: state, contact, moment, serverNow }) {
 }
 
 /** Return the trend of a signal as `{trend, end}`, the second with which it ends. */
-export function trendOf(name, signal, { moment, serverNow }) {
+export function trendOf(name, signal, { live: state, moment, serverNow, contact }) {
   const end = Math.floor(serverNow / 1000);
-  if (!moment) return { trend: live.of(name, signal, end), end };
+  // A recording has none, and without contact nobody answers.
+  const hasHistory = !state.replay && contact.level !== "lost";
+  if (!moment) return { trend: live.of(name, signal, end, hasHistory), end };
   if (pinned.at !== moment.at) pinned = { at: moment.at, trends: new Trends() };
-  return { trend: pinned.trends.of(name, signal, end), end };
+  return { trend: pinned.trends.of(name, signal, end, hasHistory), end };
 }

@@ -60,7 +60,7 @@ class Tabs extends HTMLElement {
 function tab(title) {
   const name = title.toLowerCase();
   const count = el("span", { class: "count", "aria-hidden": "true", hidden: true });
-  const props = { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "panels", "aria-label": title };
+  const props = { type: "button", role: "tab", id: `panels-${name}`, "aria-controls": "panels", "aria-label": title };
   return { name, title, count, button: el("button", props, icon(name), el("span", {}, title), count) };
 }
 

@@ -7,6 +7,7 @@ import { partPath, request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { errorName, isOn, isWaiting, mayGoOn, worseBelow } from "/web/js/base/error_groups.js";
 import { isSame } from "/web/js/base/same.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
 import { whileSending } from "/web/js/base/sending.js";
 import "/web/js/base/sparkline.js";
 import {
@@ -14,7 +15,6 @@ import {
   factsOf,
   hintOf,
   measured,
-  plainMessage,
   signalOf,
   tagsOf,
 } from "/web/js/inspector/error_words.js";
@@ -31,7 +31,7 @@ class Alarm extends HTMLElement {
     if (this.details) return;
     this.shape = el("span", { class: "shape" });
     this.name = el("strong");
-    this.part = el("span", { class: "alarm-part" });
+    this.owner = el("span", { class: "alarm-part" });
     this.tags = el("span", { class: "tags" });
     this.age = el("span", { class: "age" });
     this.message = el("span", { class: "alarm-message" });
@@ -43,7 +43,7 @@ class Alarm extends HTMLElement {
         "summary",
         {},
         this.shape,
-        el("span", { class: "alarm-title" }, this.name, this.part, this.tags),
+        el("span", { class: "alarm-title" }, this.name, this.owner, this.tags),
         this.age,
         this.message,
         this.spark,
@@ -68,20 +68,22 @@ class Alarm extends HTMLElement {
     const key = [error, enabled, volatile, ...below];
     if (this.#shown && isSame(key, this.#shown.key)) return;
     this.#shown = { error, below, view, key, signal: state.signals[signal] };
-    this.#showHead(error, state);
+    this.#showHead(error, below, state);
     setAttribute(this.spark, "hidden", !signal || !isOn(error));
     this.#fillBody();
   }
 
-  #showHead(error, { signals, parts }) {
-    const { part, severity, state } = error;
+  #showHead(error, below, { signals, parts }) {
+    const { part, state } = error;
+    // A root is as urgent as the worst that follows from it.
+    const { severity } = worseBelow(error, below) ?? error;
     this.#path = `${part === null ? "" : partPath(parts[part] ?? { kind: "node", name: part })}/errors/${encodeURIComponent(error.error)}`;
     setAttribute(this, "data-state", state);
     setAttribute(this, "data-severity", severity);
     showShape(this.shape, severity, isOn(error));
     setAttribute(this.details.firstChild, "title", errorName(error));
     setText(this.name, error.error);
-    setText(this.part, part === null ? "" : ` of ${part}`);
+    setText(this.owner, part === null ? "" : ` of ${part}`);
     renderOnce(this.tags, tagsOf(error).join(), () => tagsOf(error).map((tag) => el("span", { class: "tag" }, tag)));
     setText(this.message, plainMessage(error.message, signals));
   }
@@ -91,7 +93,8 @@ class Alarm extends HTMLElement {
     if (!this.details.open || !this.#shown) return;
     if (!this.body) this.#buildBody();
     const { error, below, view, signal } = this.#shown;
-    setText(this.meaning, consequence(error));
+    const worse = worseBelow(error, below);
+    setText(this.meaning, consequence(worse ?? error) + (worse ? `, by ${errorName(worse)}` : ""));
     setText(this.measure, measured(error, signal));
     setText(this.facts, factsOf(error));
     const hint = hintOf(error);
@@ -108,33 +111,35 @@ class Alarm extends HTMLElement {
     this.advice = el("p", { class: "hint" });
     this.list = el("ul");
     this.summary = el("summary");
-    this.below = el("details", { class: "reasons-of", hidden: true }, this.summary, this.list);
+    this.below = el("details", { class: "unfold", hidden: true }, this.summary, this.list);
     this.below.addEventListener("toggle", () => this.#fillBody());
     this.held = el("ph-hold-button", { label: "Acknowledge (hold)", hidden: true });
     this.held.addEventListener("ph-held", ({ detail }) => this.#acknowledge(this.held.button, detail));
     this.seen = this.#button("Acknowledge", () => this.#acknowledge(this.seen, {}));
     this.shelve = this.#button("Shelve …", () => this.#openForm());
     this.announce = this.#button("Announce again", () => this.#send(this.announce, "DELETE", "/shelf"));
-    this.link = this.#button("", () => this.#tell("ph-select", this.#shown.error.part));
-    this.moment = this.#button("On the timeline", () =>
-      this.#tell("ph-show-moment", { at: Date.parse(this.#shown.error.since_at) }),
-    );
-    this.buttons = el("div", { class: "buttons" }, this.held, this.seen, this.shelve, this.announce, this.link, this.moment);
-    this.body = el("div", { class: "alarm-body" }, this.meaning, this.measure, this.facts, this.advice, this.buttons, this.below);
+    this.buttons = el("div", { class: "buttons" }, this.held, this.seen, this.shelve, this.announce);
+    const said = [this.meaning, this.measure, this.facts, this.advice];
+    this.body = el("div", { class: "alarm-body" }, ...said, this.buttons, this.#links(), this.below);
     this.details.append(this.body);
   }
 
-  #button(text, act) {
-    const button = el("button", { type: "button", class: "small" }, text);
+  #links() {
+    this.link = this.#button("", () => this.#tell("ph-select", this.#shown.error.part), "link");
+    const tell = () => this.#tell("ph-show-moment", { at: Date.parse(this.#shown.error.since_at) });
+    this.moment = this.#button("Show on the timeline", tell, "link");
+    return el("div", { class: "links" }, this.link, this.moment);
+  }
+
+  #button(text, act, kind = "small") {
+    const button = el("button", { type: "button", class: kind }, text);
     button.addEventListener("click", act);
     return button;
   }
 
   #showBelow(error, below, view) {
     setAttribute(this.below, "hidden", below.length === 0);
-    const worse = worseBelow(error, below);
-    const leadsTo = worse ? `: ${errorName(worse)}, ${worse.severity}` : "";
-    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this${leadsTo}`);
+    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this`);
     if (!this.below.open) return;
     const shown = below.slice(0, BELOW_SHOWN);
     renderOnce(this.list, JSON.stringify([shown.map(errorName), below.length]), () => [

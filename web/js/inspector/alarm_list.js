@@ -14,6 +14,7 @@ class AlarmList extends HTMLElement {
   #known = null;
   #groups = null;
   #view = null;
+  #opened = null;
 
   connectedCallback() {
     if (this.on) return;
@@ -22,7 +23,7 @@ class AlarmList extends HTMLElement {
     this.over = el("h3", { hidden: true }, "Over, not acknowledged");
     this.silenced = group("Errors that are not announced");
     this.summary = el("summary");
-    this.folded = el("details", { class: "reasons-of", hidden: true }, this.summary, this.silenced);
+    this.folded = el("details", { class: "unfold", hidden: true }, this.summary, this.silenced);
     this.more = el("button", { type: "button", class: "small", hidden: true });
     this.more.addEventListener("click", () => {
       this.#shown = SHOWN_AT_MOST;
@@ -58,7 +59,7 @@ class AlarmList extends HTMLElement {
   set compact(value) {
     for (const { firstChild: alarm } of this.#lines.values()) alarm.open = false;
     const first = this.on.firstElementChild;
-    if (!value && first) first.firstChild.open = true;
+    if (!value && first) this.#openFirst(first.firstChild);
   }
 
   #showRest(groups) {
@@ -81,8 +82,15 @@ class AlarmList extends HTMLElement {
       this.#lines.set(name, line);
       if (list.children[position] !== line) list.insertBefore(line, list.children[position] ?? null);
       line.firstChild.show({ error, below, view });
-      if (isNew && list === this.on && position === 0 && !view.compact) line.firstChild.open = true;
+      if (isNew && list === this.on && position === 0 && !view.compact) this.#openFirst(line.firstChild);
     });
+  }
+
+  /** The worst is open; the one that was so before is closed, unless somebody is at it. */
+  #openFirst(alarm) {
+    if (this.#opened && !this.#opened.matches(":hover, :focus-within")) this.#opened.open = false;
+    this.#opened = alarm;
+    alarm.open = true;
   }
 
   #forget(wanted) {

@@ -21,7 +21,7 @@ class Change extends HTMLElement {
     this.progress = el("p", { class: "facts" });
     this.bar = el("progress", { hidden: true, "aria-label": "Steps that are done" });
     this.steps = el("div", { class: "steps" });
-    this.details = el("details", { class: "reasons-of" }, el("summary", {}, "Steps"), this.steps);
+    this.details = el("details", { class: "unfold" }, el("summary", {}, "Steps"), this.steps);
     this.cancel = el(
       "button",
       { type: "button", class: "small", onclick: () => this.#cancel() },

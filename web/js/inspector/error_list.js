@@ -1,4 +1,7 @@
-/** <ph-error-list>: the errors of the selected part that are on, each with its time. */
+/** <ph-error-list>: the errors of the selected part that are on, each with its time.
+ *
+ * That it deviates is told by its pills, and why below them.
+ */
 
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { duration } from "/web/js/base/words.js";
@@ -7,12 +10,13 @@ class ErrorList extends HTMLElement {
   #lines = new Map();
 
   connectedCallback() {
-    this.list ??= el("ul", { class: "errors", "aria-label": "Errors of this part" });
+    this.list ??= el("ul", { class: "part-errors", "aria-label": "Errors of this part" });
     this.append(this.list);
   }
 
   /** Show the errors; an element stays while its error does, so that a reader is not disturbed. */
-  show({ errors, knownAt }) {
+  show({ errors: all, knownAt }) {
+    const errors = all.filter(({ error }) => error !== "DEVIATES");
     setAttribute(this, "hidden", errors.length === 0);
     const wanted = new Set(errors.map(({ error }) => error));
     for (const [error, line] of this.#lines) {
@@ -24,6 +28,7 @@ class ErrorList extends HTMLElement {
       if (!this.#lines.has(error)) this.#add(error);
       const line = this.#lines.get(error);
       setText(line.message, message);
+      setAttribute(line.item, "title", message);
       setText(line.since, `for ${duration(knownAt - Date.parse(since_at))}`);
     }
   }

@@ -13,13 +13,6 @@ export function signalOf({ error, part, message }, signals) {
   return found ?? message.split(/[\s,:;]+/).find((word) => Object.hasOwn(signals, word));
 }
 
-/** A message with signals called by their labels. */
-export function plainMessage(message, signals) {
-  return message.replace(/[\w/]+/g, (word) =>
-    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : word,
-  );
-}
-
 /** "2.5, limit 1": what was measured, if the message does not tell it; empty without both. */
 export function measured({ value, threshold, message }, signal) {
   if (typeof value !== "number" || typeof threshold !== "number") return "";
@@ -29,11 +22,11 @@ export function measured({ value, threshold, message }, signal) {
   return `${said}, limit ${limit}`;
 }
 
-/** "12 s" for one that is on, since when it was over for another; empty: not known. */
+/** "12 s" for one that is on, when another one ended; empty: not known. */
 export function ageWords(error, knownAt) {
   const { state, since_at: since, ended_at: ended } = error;
   if (isOn(error)) return since ? wholeSeconds(knownAt - Date.parse(since)) : "";
-  return state === "returned" && ended ? `ended ${timeAndDay(ended)}` : "";
+  return state === "returned" && ended ? timeAndDay(ended) : "";
 }
 
 /** What is special about an error, each in a word or two. */
@@ -59,7 +52,6 @@ export function factsOf(error) {
   }
   if (first_out) facts.push("it came before the others");
   if (count > 1) facts.push(`${count} times`);
-  if (error.chattering) facts.push("it comes and goes");
   if (error.shelved_until_at !== null)
     facts.push(`shelved until ${timeAndDay(error.shelved_until_at)}: ${error.shelved_because}`);
   if (error.suppressed) facts.push("suppressed by the model");

@@ -10,6 +10,7 @@
 
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { nearestWords, reasonTree } from "/web/js/base/reasons.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
 import { modeName } from "/web/js/base/words.js";
 
 const WAIT_S = 600;
@@ -29,8 +30,9 @@ class ModeSwitcher extends HTMLElement {
   }
 
   /** Show modes as `GET P/modes` has them; `isLive`: what they say of the part is of now. */
-  show({ part, modes, enabled, isLive }) {
+  show({ part, modes, enabled, isLive, signals }) {
     this.subject = part;
+    this.words = (text) => plainMessage(text, signals);
     this.isLive = isLive;
     const key = modes.map(({ mode }) => mode).join("\n");
     if (this.#key !== key) this.#build(key, modes);
@@ -52,9 +54,9 @@ class ModeSwitcher extends HTMLElement {
     const button = el("button", { type: "button", role: "radio", title: mode }, name, mark);
     const blocker = el("span", { class: "blocker", id: `blocker-${mode}` });
     const [title, content] = [el("span"), el("div")];
-    const of = el("span", { class: "visually-hidden" }, ` ${modeName(mode)}`);
+    const of = el("span", {}, ` ${modeName(mode)}`);
     const summary = el("summary", {}, el("span", { class: "why-not" }, title, of), blocker);
-    const whole = el("details", { class: "reasons-of" }, summary, content);
+    const whole = el("details", { class: "unfold" }, summary, content);
     const line = { mode, button, mark, blocker, whole, title, content, item: null };
     line.item = el("div", { class: "mode" }, button, whole);
     button.addEventListener("click", () => this.#press(line));
@@ -92,7 +94,7 @@ class ModeSwitcher extends HTMLElement {
     const sorted = [...blockers].sort((a, b) => refuses(b) - refuses(a));
     const [first, ...others] = sorted;
     const more = others.length ? ` (and ${others.length} more)` : "";
-    setText(line.blocker, first ? `${can_enter ? "⚠ " : ""}${nearestWords(first)}${more}` : "");
+    setText(line.blocker, first ? `${can_enter ? "⚠ " : ""}${this.words(nearestWords(first))}${more}` : "");
     setAttribute(line.blocker, "data-advisory", can_enter);
     line.shown = { ...shown, blockers: sorted };
     this.#fillDetails(line);
@@ -101,10 +103,10 @@ class ModeSwitcher extends HTMLElement {
   #fillDetails({ whole, title, content, shown, mode }) {
     const { can_enter, blockers, requires = [], invariants = [] } = shown;
     setAttribute(whole, "hidden", blockers.length + requires.length + invariants.length === 0);
-    setText(title, blockers.length === 0 ? "Conditions" : can_enter ? "Why the warning" : "Why not");
+    setText(title, blockers.length === 0 ? "Conditions of" : can_enter ? "Warning for" : "Why not");
     if (!whole.open) return;
     renderOnce(content, JSON.stringify([can_enter, blockers, requires, invariants]), () => [
-      ...(blockers.length ? [reasonTree(blockers)] : []),
+      ...(blockers.length ? [reasonTree(blockers, this.words)] : []),
       ...(can_enter ? [] : [this.#waitButton(mode)]),
       ...conditionList("Required to enter", requires),
       ...conditionList("Required to enter and to stay", invariants),

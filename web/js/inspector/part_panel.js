@@ -189,14 +189,15 @@ class PartPanel extends HTMLElement {
     const { watch, view } = this;
     if (watch.part === null || !view) return;
     const { moment, enabled, knownAt } = view;
-    const part = view.state.parts[watch.part.name] ?? watch.part;
+    const { parts, signals } = view.state;
+    const part = parts[watch.part.name] ?? watch.part;
     const isNow = moment === null;
-    this.why.show({ part, why: isNow ? watch.why : whyThen(part) });
+    this.why.show({ part, why: isNow ? watch.why : whyThen(part), signals });
     watch.explain(isNow && this.why.isOpen);
     const modes = isNow ? watch.modes : watch.modes.map(withoutReasons);
     setAttribute(this.modeTitle.parentElement, "hidden", modes.length === 0);
     this.planFirst.disabled = !enabled;
-    this.commands.show({ part, modes, enabled, isLive: enabled });
+    this.commands.show({ part, modes, enabled, isLive: enabled, signals });
     this.plan.show({ plan: isNow ? watch.plan : null, enabled });
     const change = isNow ? watch.change : null;
     this.result.show({ part, change, problem: isNow ? this.problem : null, enabled, knownAt });

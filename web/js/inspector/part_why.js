@@ -5,6 +5,7 @@
 
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { reasonTree } from "/web/js/base/reasons.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
 import { label } from "/web/js/base/words.js";
 
 class PartWhy extends HTMLElement {
@@ -12,7 +13,7 @@ class PartWhy extends HTMLElement {
     if (this.details) return;
     this.where = el("p", { class: "facts" });
     this.reasons = el("div");
-    this.details = el("details", { class: "reasons-of" });
+    this.details = el("details", { class: "unfold" });
     this.summary = el("summary");
     this.details.append(this.summary, this.where, this.reasons);
     this.details.addEventListener("toggle", () =>
@@ -26,7 +27,7 @@ class PartWhy extends HTMLElement {
   }
 
   /** Show the answer to `GET P/why` for a part; null: it is not there yet. */
-  show({ part, why }) {
+  show({ part, why, signals }) {
     const target = part.effective_target;
     const isDisplaced = Boolean(target && target.because !== "requested");
     setAttribute(this, "hidden", part.converged && !isDisplaced);
@@ -35,7 +36,7 @@ class PartWhy extends HTMLElement {
     renderOnce(this.reasons, JSON.stringify(why?.blockers), () => {
       if (!why?.blockers) return [el("p", { class: "quiet" }, "Asking …")];
       if (why.blockers.length === 0) return [el("p", { class: "quiet" }, "No reason is known.")];
-      return [reasonTree(why.blockers)];
+      return [reasonTree(why.blockers, (text) => plainMessage(text, signals))];
     });
   }
 }

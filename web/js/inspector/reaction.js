@@ -1,4 +1,4 @@
-/** <ph-reaction>: what a reaction does or waits for, and whether it may act.
+/** <ph-reaction>: what a reaction does and waits for; opened why, and whether it may act.
  *
  * Arming and acknowledging may set the robot in motion, so both need a long press.
  */
@@ -8,6 +8,7 @@ import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { reasonTree } from "/web/js/base/reasons.js";
 import { isSame } from "/web/js/base/same.js";
 import { whileSending } from "/web/js/base/sending.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
 import { label, modeName, timeAndDay } from "/web/js/base/words.js";
 
 const ARMS = ["active", "passive", "disarmed"];
@@ -29,11 +30,17 @@ class Reaction extends HTMLElement {
     this.name = el("strong");
     this.state = el("span", { class: "tag" });
     this.does = el("span", { class: "quiet" });
-    this.head = el("p", { class: "reaction-head" }, this.name, this.state, this.does);
-    this.waits = el("p", { class: "quiet" });
+    this.waits = el("span", { class: "reaction-waits" });
+    this.head = el("summary", {}, el("span", { class: "reaction-head" }, this.name, this.state, this.does), this.waits);
     this.reasons = el("div");
-    this.why = el("details", { class: "reasons-of" }, el("summary", {}, "Why it acts"), this.reasons);
-    this.why.addEventListener("toggle", () => this.#fillWhy());
+    this.buttons = this.#makeButtons();
+    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
+    this.details = el("details", { class: "unfold" }, this.head, this.reasons, this.buttons, this.problem);
+    this.details.addEventListener("toggle", () => this.#fillWhy());
+    this.append(this.details);
+  }
+
+  #makeButtons() {
     this.arm = el("select", {}, ...ARMS.map((arm) => el("option", { value: arm }, arm)));
     this.arm.addEventListener("change", () => {
       this.#isChosen = true;
@@ -44,14 +51,7 @@ class Reaction extends HTMLElement {
     this.seen = el("ph-hold-button", { label: "Acknowledge (hold)", hidden: true });
     this.seen.addEventListener("ph-held", ({ detail }) => this.#acknowledge(detail.volatile));
     const armed = el("label", { class: "field inline" }, el("span", { class: "quiet" }, "Arm"), this.arm);
-    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
-    this.append(
-      this.head,
-      this.waits,
-      this.why,
-      el("div", { class: "buttons" }, armed, this.set, this.seen),
-      this.problem,
-    );
+    return el("div", { class: "buttons" }, armed, this.set, this.seen);
   }
 
   /** Show a reaction named `name`, such as "rover.LIMP". */
@@ -60,21 +60,22 @@ class Reaction extends HTMLElement {
     if (isSame(seen, this.#seen)) return;
     this.#seen = seen;
     this.reaction = reaction;
+    this.words = (text) => plainMessage(text, state.signals);
     const part = state.parts[reaction.part] ?? { kind: "node", name: reaction.part };
     this.path = `${partPath(part)}/reactions/${encodeURIComponent(reaction.reaction)}`;
     setAttribute(this, "data-state", reaction.state);
     setText(this.name, name);
-    setAttribute(this.name, "title", name);
     setText(this.state, STATES[reaction.state] ?? reaction.state);
     setText(this.does, doneBy(reaction));
     setText(this.waits, `Waits for ${reaction.waits_for}`);
-    setAttribute(this.why, "hidden", reaction.blockers.length === 0);
     this.#fillWhy();
     setAttribute(this.arm, "aria-label", `Arm ${name}`);
     if (!this.#isChosen) this.arm.value = reaction.arm;
     this.arm.disabled = !enabled;
     this.#showSet();
-    setAttribute(this.seen, "hidden", !needsAcknowledgement(reaction));
+    const isNeeded = needsAcknowledgement(reaction);
+    if (isNeeded && this.seen.hidden) this.details.open = true;
+    setAttribute(this.seen, "hidden", !isNeeded);
     for (const button of [this.set, this.seen]) {
       button.disabled = !enabled;
       button.volatile = volatile;
@@ -83,7 +84,7 @@ class Reaction extends HTMLElement {
 
   #fillWhy() {
     const { blockers } = this.reaction;
-    if (this.why.open) renderOnce(this.reasons, JSON.stringify(blockers), () => [reasonTree(blockers)]);
+    if (this.details.open) renderOnce(this.reasons, JSON.stringify(blockers), () => (blockers.length ? [reasonTree(blockers, this.words)] : []));
   }
 
   #showSet() {

@@ -13,7 +13,7 @@ class ReactionList extends HTMLElement {
     this.shown = el("ul", { class: "reactions", "aria-label": "Reactions that do something" });
     this.idle = el("ul", { class: "reactions", "aria-label": "Reactions that wait" });
     this.summary = el("summary");
-    this.folded = el("details", { class: "reasons-of" }, this.summary, this.idle);
+    this.folded = el("details", { class: "unfold" }, this.summary, this.idle);
     this.append(this.heading, this.shown, this.folded);
   }
 

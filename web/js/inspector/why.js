@@ -4,8 +4,9 @@
  * closed, so that the part below is in sight; the event `ph-why` opens the first again.
  */
 
-import { el, setAttribute, setText } from "/web/js/base/dom.js";
-import "/web/js/header/reason_list.js";
+import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
+import { errorName, isOn } from "/web/js/base/error_groups.js";
+import { stateSentence } from "/web/js/base/state_sentence.js";
 import "/web/js/inspector/alarm_list.js";
 import "/web/js/inspector/reaction_list.js";
 
@@ -22,11 +23,11 @@ class Why extends HTMLElement {
     this.count = el("span", { class: "quiet" });
     this.heading = el("h2", { tabindex: -1 }, "Why ", this.count);
     this.calm = el("p", { class: "quiet" });
-    this.reasons = el("ph-reason-list");
+    this.others = el("ul", { class: "others", "aria-label": "Further reasons" });
     this.errors = el("ph-alarm-list");
     this.reactions = el("ph-reaction-list");
     const head = el("div", { class: "why-head" }, this.heading, this.calm);
-    this.append(head, this.reasons, this.errors, this.reactions);
+    this.append(head, this.others, this.errors, this.reactions);
     document.addEventListener("ph-select", () => this.#fold(true));
     document.addEventListener("ph-why", () => this.#fold(false));
   }
@@ -46,12 +47,13 @@ class Why extends HTMLElement {
 
   #show(view) {
     const { state } = view;
-    this.reasons.update(view);
+    const others = otherReasons(view);
+    renderOnce(this.others, others.join("\n"), () => others.map((text) => el("li", {}, text)));
     const { on, returned, silenced } = this.errors.show(view);
     const acting = this.reactions.show({ reactions: state.reactions, view });
     const counts = [counted(on, "wrong"), counted(acting, "acting")].filter(Boolean);
     setText(this.count, counts.join(", "));
-    setAttribute(this.calm, "hidden", on > 0 || !this.reasons.hidden);
+    setAttribute(this.calm, "hidden", on > 0 || others.length > 0);
     const calm = returned + silenced ? "Nothing is wrong now" : "Nothing is wrong";
     setText(this.calm, state.at === null ? "No data yet" : calm);
   }
@@ -60,6 +62,20 @@ class Why extends HTMLElement {
     this.#isCompact = isCompact;
     this.errors.compact = isCompact;
   }
+}
+
+/** What the sentence of the header tells beside errors: holds, a vehicle that moves, contact. */
+function otherReasons({ live, state, contact }) {
+  const said = stateSentence(state, state === live ? contact : { level: "live" });
+  if (said.level === "calm") return [];
+  const told = Object.values(state.errors).filter(isOn).map(toldBy);
+  return [said.text, ...said.more].filter((line) => !told.some((words) => line.startsWith(words)));
+}
+
+/** How the line begins that an error makes superfluous. */
+function toldBy(error) {
+  if (error.error === "UNREACHABLE") return `${error.part} is unreachable`;
+  return error.message || errorName(error);
 }
 
 function counted(count, word) {

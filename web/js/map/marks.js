@@ -5,6 +5,9 @@ import { toScreen } from "/web/js/map/view.js";
 
 // So far from the vehicle the number of the target stands clear of it, px.
 const CLEAR_PX = 34;
+// So small that the mark would hide the vehicle, px per wheelbase.
+const LEAST_WHEELBASE_PX = 14;
+const DIAMOND_PX = 5;
 
 /** `target` is `{place, index}`; its number, counted from 1, is said where there is room. */
 export function drawTarget(context, view, ink, { place, index }, pose) {
@@ -21,6 +24,7 @@ export function drawTarget(context, view, ink, { place, index }, pose) {
 
 /** Pure Pursuit aims from the rear axle, Stanley corrects the error of the front axle. */
 export function drawAim(context, view, ink, { pose, lookahead, limits }, controller) {
+  if (limits.wheelbase_m * view.scale < LEAST_WHEELBASE_PX) return;
   const axle = controller === "stanley" ? frontAxle(pose, limits.wheelbase_m) : pose;
   const [from, to] = [toScreen(view, axle), toScreen(view, lookahead)];
   context.lineWidth = 1.5;
@@ -32,10 +36,10 @@ export function drawAim(context, view, ink, { pose, lookahead, limits }, control
   context.stroke();
   context.fillStyle = ink.aim;
   context.beginPath();
-  context.moveTo(to.x, to.y - 6);
-  context.lineTo(to.x + 6, to.y);
-  context.lineTo(to.x, to.y + 6);
-  context.lineTo(to.x - 6, to.y);
+  context.moveTo(to.x, to.y - DIAMOND_PX);
+  context.lineTo(to.x + DIAMOND_PX, to.y);
+  context.lineTo(to.x, to.y + DIAMOND_PX);
+  context.lineTo(to.x - DIAMOND_PX, to.y);
   context.fill();
 }
 

@@ -1,8 +1,8 @@
 /** The lines of the lists of parts: pure functions of the structure of the parts.
  *
- * A line has `key`, `name` (of the part), `shown` (that without the namespace which a heading above
- * it names), `level`, `index` and `count` (place among its siblings, from 1), and `open` (null: it
- * contains nothing). A heading has `heading` and no `name`.
+ * A line has `key`, `name` (of the part), `shown` and `space` (its last word, and the namespace before
+ * that; "" where a heading above tells it), `level`, `index` and `count` (place among its siblings,
+ * from 1), and `open` (null: it contains nothing). A heading has `heading` and no `name`.
  */
 
 // Paths are joined by a character that no name contains; names may contain slashes.
@@ -22,13 +22,14 @@ export function treeLines({ roots, children }, isOpen, shown = null) {
     const seen = shown ? names.filter((name) => shown.has(name)) : names;
     let index = 0;
     for (const { space, members } of byNamespace(seen)) {
-      if (space) lines.push({ key: `${parent}${JOINT}${space}/`, heading: space, level });
+      const isHeaded = members.length > 1 && space !== "";
+      if (isHeaded) lines.push({ key: `${parent}${JOINT}${space}/`, heading: space, level });
       for (const name of members) {
         const key = parent ? parent + JOINT + name : name;
         const below = children.get(name).filter((child) => !shown || shown.has(child));
         const open = below.length > 0 ? isOpen(key, name, level) : null;
-        const rest = space ? name.slice(space.length + 1) : name;
-        lines.push({ key, name, shown: rest, level, open, index: ++index, count: seen.length });
+        const words = { shown: lastWord(name), space: isHeaded ? "" : space };
+        lines.push({ key, name, ...words, level, open, index: ++index, count: seen.length });
         if (open) add(below, key, level + 1);
       }
     }
@@ -41,20 +42,31 @@ export function treeLines({ roots, children }, isOpen, shown = null) {
 export function byNamespace(names) {
   const groups = new Map();
   for (const name of names) {
-    const space = name.slice(0, Math.max(0, name.lastIndexOf("/")));
+    const space = namespaceOf(name);
     // Without a namespace each one keeps its place.
     const key = space ? `${space}/` : name;
     if (!groups.has(key)) groups.set(key, { space, members: [] });
     groups.get(key).members.push(name);
   }
-  for (const group of groups.values()) if (group.members.length === 1) group.space = "";
   return [...groups.values()];
+}
+
+function namespaceOf(name) {
+  return name.slice(0, Math.max(0, name.lastIndexOf("/")));
+}
+
+/** Return a name without its namespace. */
+export function lastWord(name) {
+  return name.slice(name.lastIndexOf("/") + 1);
 }
 
 /** Return the lines of a flat list. */
 export function flatLines(names) {
-  const count = names.length;
-  return names.map((name, at) => ({ key: name, name, shown: name, open: null, index: at + 1, count }));
+  const shared = { open: null, count: names.length };
+  return names.map((name, at) => {
+    const words = { shown: lastWord(name), space: namespaceOf(name) };
+    return { key: name, name, ...words, index: at + 1, ...shared };
+  });
 }
 
 /** Return whether all words of a text are in the name, in any order and case. */
@@ -83,12 +95,13 @@ export function filtered({ order, below }, words) {
   return { found, kept, leading };
 }
 
-/** How many characters of the end of a long name are always shown: they tell it from the others. */
-const TAIL = 8;
-const LONG = 14;
+/** Names up to this length have no end of their own; the end of others has at most so many. */
+const [SHORT, END] = [12, 8];
 
-/** Split a name into what may give way to an ellipsis, and its end. */
+/** Split a name into what may give way to an ellipsis, and the end that tells it from others. */
 export function splitName(name) {
-  if (name.length <= LONG) return [name, ""];
-  return [name.slice(0, -TAIL), name.slice(-TAIL)];
+  if (name.length <= SHORT) return [name, ""];
+  const mark = name.search(/[_.-][^_.-]*$/);
+  const at = mark >= name.length - END ? mark : name.length - END + 2;
+  return [name.slice(0, at), name.slice(at)];
 }

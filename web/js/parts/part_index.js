@@ -78,6 +78,8 @@ export class Looks {
   #below = new Map();
   /** Those that need attention, the worst first; where it begins before what follows from it. */
   attention = NONE;
+  /** Those of them with nothing below that needs attention. */
+  begins = new Set();
 
   /** Take the parts and their errors; return whether any look changed. */
   take(structure, errors) {
@@ -116,9 +118,9 @@ export class Looks {
   #rollUp({ order, below }) {
     const wanting = order.filter((name) => this.#rank(name) >= ATTENTION);
     const isWanting = new Set(wanting);
-    const begins = new Set(
+    const begins = (this.begins = new Set(
       wanting.filter((name) => ![...below.get(name)].some((deeper) => isWanting.has(deeper))),
-    );
+    ));
     this.#below = new Map();
     for (const [name, deeper] of below) {
       const found = deeper.size === 0 ? NONE : [...begins].filter((one) => deeper.has(one));

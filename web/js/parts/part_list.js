@@ -14,8 +14,6 @@ import { StateTimes } from "/web/js/parts/state_times.js";
 
 /** With more parts than this, systems are closed at first and nodes are squares as well. */
 const MANY = 100;
-/** With fewer, the region needs no more room than its rows. */
-const FEW = 8;
 /** As many are listed above all others while all are shown. */
 const PINNED = 4;
 const TOUCH = matchMedia("(pointer: coarse), (max-width: 1023px)");
@@ -84,14 +82,14 @@ class PartList extends HTMLElement {
 
   #attend() {
     this.bar.attend(true);
-    this.urgent.focus();
+    // On a phone the list is shown only now.
+    requestAnimationFrame(() => this.urgent.focus());
   }
 
   #restructure(structure) {
     this.#structure = structure;
     const { names, nodes } = structure;
-    setAttribute(this, "data-size", names.length <= FEW ? "few" : names.length > MANY ? "many" : "some");
-    setAttribute(this.bar.input, "placeholder", names.length > FEW ? `Filter ${names.length} parts` : "Filter");
+    setAttribute(this.bar.input, "placeholder", names.length > 1 ? `Filter ${names.length} parts` : "Filter");
     setAttribute(this.squaresPlace, "hidden", nodes.length <= MANY);
     if (nodes.length > MANY && !this.squares) this.#addSquares();
   }
@@ -109,7 +107,7 @@ class PartList extends HTMLElement {
   #list() {
     const { words, isAttention } = this.bar;
     const structure = this.#structure;
-    const { attention } = this.#looks;
+    const { attention, begins } = this.#looks;
     const isWanted = (name) => this.bar.lets(this.#looks.look(name)) && matches(name, words);
     const urgent = isAttention ? attention.filter(isWanted) : words.length > 0 ? [] : attention.slice(0, PINNED);
     this.urgentLines = flatLines(urgent);
@@ -117,11 +115,12 @@ class PartList extends HTMLElement {
     this.urgent.hide(urgent.length === 0);
     const more = isAttention || words.length > 0 ? 0 : attention.length - urgent.length;
     setAttribute(this.more, "hidden", more === 0);
-    setText(this.more, `+${more} more need attention`);
+    setText(this.more, moreWords(attention.slice(urgent.length), begins));
     this.tree.hide(isAttention);
+    setAttribute(this, "data-shown", isAttention ? "attention" : "all");
     const match = words.length > 0 ? filtered(structure, words) : null;
     this.treeLines = isAttention ? [] : treeLines(structure, this.#isOpen(match), match?.kept ?? null);
-    this.bar.count(attention.map((name) => this.#looks.look(name)));
+    this.bar.count([...begins].map((name) => this.#looks.look(name)));
     this.#say(isAttention ? urgent.length : match?.found.size);
   }
 
@@ -190,6 +189,14 @@ class PartList extends HTMLElement {
   #select({ name }) {
     this.dispatchEvent(new CustomEvent("ph-select", { bubbles: true, detail: name }));
   }
+}
+
+/** What deviates because of others comes after those. */
+function moreWords(left, begins) {
+  const others = left.filter((name) => begins.has(name)).length;
+  const systems = left.length - others;
+  const following = `${systems} ${systems === 1 ? "system deviates" : "systems deviate"} because of these`;
+  return [others > 0 ? `${others} more` : "", systems > 0 ? following : ""].filter(Boolean).join(", ");
 }
 
 function isSame(one, other) {

@@ -1,6 +1,7 @@
 /** One row of a list of parts: dot, name, what is wrong below, target and actual, age, cause. */
 
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
+import { label, modeName } from "/web/js/base/words.js";
 import { splitName } from "/web/js/parts/lines.js";
 import { causeWords, LOOK_WORDS, missedTarget } from "/web/js/parts/verdict.js";
 
@@ -12,12 +13,13 @@ export function makeRow(role) {
     dot: el("span", { class: "dot" }),
     start: el("span", { class: "name-start" }),
     end: el("span", { class: "name-end" }),
+    space: el("span", { class: "name-space" }),
     below: el("span", { class: "below" }),
     fit: el("span", { class: "fit" }),
     age: el("span", { class: "age" }),
     cause: el("span", { class: "cause" }),
   };
-  row.name = el("span", { class: "name" }, row.start, row.end);
+  row.name = el("span", { class: "name" }, row.start, row.end, row.space);
   const parts = [row.twist, row.dot, row.name, row.below, row.fit, row.age, row.cause];
   row.item = el("li", { role }, ...parts);
   return row;
@@ -25,7 +27,8 @@ export function makeRow(role) {
 
 /** Bring a row up to date; nothing is touched while all that it shows is as it was.
  *
- * `told` is what is known of the part: `{part, look, errors, below, age, isSelected, hasFocus}`.
+ * `told` is what is known of the part: `{part, look, errors, below, age, isSelected, hasFocus, width}`,
+ * the width of the list in px.
  */
 export function fillRow(row, line, told) {
   const seen = [line, ...Object.values(told)];
@@ -34,7 +37,7 @@ export function fillRow(row, line, told) {
   const { item } = row;
   item.line = line;
   if (line.heading) return fillHeading(row, line);
-  const { part, look, errors, below, age, isSelected, hasFocus } = told;
+  const { part, look, errors, below, age, isSelected, hasFocus, width } = told;
   setAttribute(item, "class", "row");
   setAttribute(item, "aria-hidden", null);
   setAttribute(item, "aria-level", line.level);
@@ -46,11 +49,12 @@ export function fillRow(row, line, told) {
   setAttribute(item, "data-look", look);
   setAttribute(row.dot, "data-look", look);
   item.style.setProperty("--level", line.level ?? 1);
-  fillName(row, line.shown, line.name);
+  fillName(row, line);
   const isFolded = below !== null && line.open !== true;
   setText(row.below, isFolded ? String(below.count) : "");
   setAttribute(row.below, "data-look", isFolded ? below.worst : null);
-  fillFit(row.fit, part);
+  fillFit(row.fit, part, { look, below });
+  setAttribute(item, "data-tight", isTight(line, row.fit, width - (isFolded ? BADGE_PX : 0)));
   setText(row.age, age);
   const cause = causeWords(part, errors);
   setText(row.cause, cause);
@@ -58,34 +62,56 @@ export function fillRow(row, line, told) {
   setAttribute(item, "aria-label", spoken(line.name, told, isFolded, cause));
 }
 
-function fillHeading({ item, start, end, name, below, fit, age, cause }, { heading, level }) {
+function fillHeading(row, { heading, level }) {
+  const { item } = row;
   setAttribute(item, "class", "space");
   // Each row below says its whole name.
   setAttribute(item, "aria-hidden", "true");
   setAttribute(item, "tabindex", null);
   item.style.setProperty("--level", level);
-  [start.textContent, end.textContent, name.title] = [`${heading}/`, "", heading];
-  for (const empty of [below, fit, age, cause]) setText(empty, "");
+  fillName(row, { name: heading, shown: `${heading}/`, space: "" });
+  for (const empty of [row.below, row.age, row.cause]) setText(empty, "");
+  row.fit.replaceChildren();
+  row.fit.key = "";
 }
 
-function fillName({ start, end, name }, shown, whole) {
-  if (name.title === whole && start.textContent + end.textContent === shown) return;
-  name.title = whole;
-  [start.textContent, end.textContent] = splitName(shown);
+function fillName({ start, end, space: aside, name: node }, { name, shown, space }) {
+  setAttribute(node, "title", name);
+  const [head, tail] = splitName(shown);
+  setText(start, head);
+  setText(end, tail);
+  setText(aside, space);
 }
 
-/** The target only where it is missed; then what both have in common is left out. */
-function fillFit(fit, part) {
+/** Whether name and pill are longer together than a list of this width has room for.
+ *
+ * Counted and not measured: a layout for each row of each frame would cost more than it is worth.
+ */
+function isTight({ shown, level = 1 }, fit, width) {
+  const needed = shown.length * NAME_PX + fit.textContent.length * FIT_PX;
+  return needed > width - OTHERS_PX - level * LEVEL_PX;
+}
+
+/** The widest that a letter of a name and of a pill are on average, and what stands beside both. */
+const [NAME_PX, FIT_PX, LEVEL_PX, BADGE_PX, OTHERS_PX] = [7.3, 6.7, 13, 25, 106];
+
+/** The target only where it is missed; then what both have in common is left out.
+ *
+ * Of a system in which something below is missed, the badge tells that.
+ */
+function fillFit(fit, part, { look, below }) {
   const { actual } = part;
-  const wanted = missedTarget(part);
-  const key = `${stateWords(actual)}|${wanted ? stateWords(wanted) : ""}`;
+  const wanted = below ? null : missedTarget(part);
+  const isAway = look === "unreachable";
+  const key = `${isAway}|${stateWords(actual)}|${wanted ? stateWords(wanted) : ""}`;
   if (fit.key === key) return;
   fit.key = key;
   fit.title = wanted ? `target ${stateWords(wanted)}, actual ${stateWords(actual)}` : "";
+  if (isAway) return fit.replaceChildren("unreachable");
   if (!wanted) return fit.replaceChildren(...actualWords(actual, true));
-  const isModeOnly = wanted.state === actual.state && wanted.mode && actual.mode;
+  const isModeOnly = wanted.state === actual.state && wanted.mode;
   fit.replaceChildren(
-    el("span", { class: "wanted" }, isModeOnly ? modeWords(wanted.mode) : short(wanted)),
+    el("span", { class: "wanted" }, isModeOnly ? modeName(wanted.mode) : short(wanted)),
     el("span", { class: "arrow" }, "→"),
     ...actualWords(actual, !isModeOnly),
   );
@@ -94,28 +120,23 @@ function fillFit(fit, part) {
 /** Inferred is italic with (*), as in the mode monitor of system_modes. */
 function actualWords({ state, mode, inferred, mode_inferred }, hasState) {
   if (state === "unknown") return [el("b", { title: "not known" }, "?")];
-  const said = [];
-  if (hasState) said.push(el("span", { class: `state${inferred ? " inferred" : ""}` }, state));
-  if (mode)
-    said.push(
-      el("span", { class: mode_inferred ? "mode inferred" : "mode" }, (hasState ? "." : "") + modeWords(mode)),
-    );
+  const said = hasState || mode ? [] : [el("b", { title: "mode not known" }, "?")];
+  const has = (kind, isInferred) => ({ class: isInferred ? `${kind} inferred` : kind });
+  if (hasState && mode) said.push(el("span", has("before", inferred), `${state}.`));
+  else if (hasState) said.push(el("span", has("state", inferred), state));
+  if (mode) said.push(el("span", has("mode", mode_inferred), modeName(mode)));
   if (inferred || mode_inferred)
-    said.push(el("span", { class: "star", title: "inferred, not reported" }, "(*)"));
+    said.push(el("span", { class: "star", title: "inferred, not reported" }, " (*)"));
   return said;
-}
-
-function modeWords(mode) {
-  return mode === "__DEFAULT__" ? "default" : mode;
 }
 
 function short({ state, mode }) {
   return mode && mode !== "__DEFAULT__" ? mode : state;
 }
 
-function stateWords({ state, mode, inferred, mode_inferred }) {
-  const words = state === "unknown" ? "not known" : mode ? `${state}.${modeWords(mode)}` : state;
-  return inferred || mode_inferred ? `${words} (*)` : words;
+function stateWords(actual) {
+  const words = actual.state === "unknown" ? "not known" : label(actual);
+  return actual.inferred || actual.mode_inferred ? `${words} (*)` : words;
 }
 
 /** What a screen reader says of the row, without the age, which would not let it rest. */

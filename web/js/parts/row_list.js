@@ -59,7 +59,9 @@ export class RowList {
   }
 
   #told(line) {
-    return line.heading ? NOTHING : { ...this.tell(line), hasFocus: line.key === this.rows.kept };
+    if (line.heading) return NOTHING;
+    const { kept, width } = this.rows;
+    return { ...this.tell(line), hasFocus: line.key === kept, width };
   }
 
   #keep(key) {

@@ -17,12 +17,18 @@ export class Rows {
   #window = [0, AT_FIRST];
   #isAsked = false;
   kept = null;
+  /** Of the list, in px. */
+  width = 300;
 
   /** `scroller` holds `list`; `make(line)` returns `{item, ...}`, `fill(row, line)` brings it up to date. */
   constructor({ scroller, list, rowHeight, make, fill }) {
     Object.assign(this, { scroller, list, rowHeight, make, fill });
     const ask = () => this.#askToMeasure();
-    new ResizeObserver(ask).observe(scroller);
+    new ResizeObserver(([{ contentRect }]) => {
+      this.width = contentRect.width;
+      this.#draw();
+      ask();
+    }).observe(scroller);
     // On a phone the page scrolls, elsewhere the list.
     document.addEventListener("scroll", ask, { capture: true, passive: true });
     addEventListener("resize", ask, { passive: true });

@@ -1,6 +1,7 @@
 /** What a part needs of an operator: pure functions of a part and of its errors that are on. */
 
-import { label } from "/web/js/base/words.js";
+import { label as words } from "/web/js/base/words.js";
+import { lastWord } from "/web/js/parts/lines.js";
 
 /** How urgent each look is; an operator has to attend to those from ATTENTION on. */
 export const RANKS = {
@@ -45,30 +46,36 @@ export function causeWords(part, errors = NONE) {
   const told = errors.find(({ error }) => !OF_THE_TARGET.has(error));
   if (told) return errorWords(told);
   if (part.reachable === false && part.kind === "node") return "unreachable";
-  const elsewhere = part.deviation_reason;
-  if (elsewhere && !elsewhere.startsWith(`${part.name} is `)) return `because ${nearest(elsewhere)}`;
-  if (part.actual.reason) return part.actual.reason;
+  const { actual, change, converged } = part;
+  const cause = [actual.reason, part.deviation_reason].map(stateOf).find((each) => each && each.name !== part.name);
+  if (cause) return `because ${lastWord(cause.name)} is ${cause.is}`;
+  if (actual.reason) return actual.reason;
   const failed = errors.find(({ error }) => error === "CHANGE_FAILED");
   if (failed?.message) return failed.message;
-  return part.converged ? "" : `is ${isIn(part)}, and no change is under way`;
+  const wanted = missedTarget(part);
+  if (converged || !wanted) return "";
+  return `target ${words(wanted)}, ${change ? "a change is under way" : "no change is under way"}`;
 }
 
 /** What follows from another error names that; else the error says what it is. */
 function errorWords({ part, error, message, caused_by: causes = NONE }) {
-  const cause = causes[0];
-  if (cause) return `because ${cause.part === null ? "of" : cause.part} ${cause.error}`;
-  // The row has the name of the part already.
-  const own = part && message?.startsWith(`${part} `) ? message.slice(part.length + 1) : message;
-  return own ? `${error}: ${own}` : error;
+  if (error === "UNREACHABLE" && !causes[0]) return own(part, message) || "unreachable";
+  const what = error.toLowerCase().replaceAll("_", " ");
+  if (causes[0]) return `${what} because of ${[causes[0].part, causes[0].error].filter(Boolean).join(" ")}`;
+  const said = own(part, message);
+  return said ? `${what}: ${said}` : what;
 }
 
-/** "camera is active.SLOW, target active.FAST" without what the pill of that part tells. */
-function nearest(reason) {
-  return reason.replace(/, target \S+$/, "");
+/** A message without the name of the part, which its row has already. */
+function own(part, message) {
+  const said = message?.startsWith(`${part} `) ? message.slice(part.length + 1) : (message ?? "");
+  return said.replaceAll("__DEFAULT__", "default");
 }
 
-function isIn({ actual }) {
-  return actual.state === "unknown" ? "in an unknown state" : label(actual);
+/** Return `{name, is}` of a reason such as "arm/camera is active.SLOW, target active.FAST". */
+function stateOf(reason) {
+  const found = /^(\S+) is (?:active\.)?(.+?)(?:, target .*)?$/.exec(reason ?? "");
+  return found && { name: found[1], is: found[2].replace("__DEFAULT__", "default") };
 }
 
 /** Return the target that a part does not meet, or null. */

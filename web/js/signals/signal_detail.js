@@ -75,8 +75,10 @@ class SignalDetail extends HTMLElement {
       facts.flatMap(([name, text]) => [el("dt", {}, name), el("dd", {}, text)]),
     );
     const pause = Math.max(LEAST_PAUSE_MS, (this.#span * MINUTE_MS) / POINTS);
-    const isDue = performance.now() - this.#askedAt > pause && view.contact.level !== "lost";
-    if (isDue && (!view.moment || view.moment.at !== this.shownAt)) this.#load();
+    if (view.live.replay) setText(this.summary, "A recording has no history.");
+    const isDue = performance.now() - this.#askedAt > pause;
+    const isAnswered = view.contact.level !== "lost" && !view.live.replay;
+    if (isDue && isAnswered && (!view.moment || view.moment.at !== this.shownAt)) this.#load();
   }
 
   #choose(minutes) {

@@ -5,7 +5,8 @@ import { describe } from "/web/js/base/signal_catalog.js";
 import { ageWords, pendingFor, pendingWords, valueWords, verdict } from "/web/js/base/signal_words.js";
 import "/web/js/base/sparkline.js";
 
-/** So many characters at the end of a long name stay, since names differ there. */
+/** A name that is longer is cut in its middle; the end stays, since names differ there. */
+const LONG = 20;
 const TAIL = 8;
 /** A shape for each level, so that colour is not all that tells them apart. */
 const SHAPES = {
@@ -28,7 +29,6 @@ class SignalRow extends HTMLElement {
     this.name = name;
     this.label = describe(name, signal).label;
     this.title = this.label;
-    const [head, tail] = [this.label.slice(0, -TAIL), this.label.slice(-TAIL)];
     this.word = el("span", { class: "signal-word" });
     this.button = el(
       "button",
@@ -37,7 +37,7 @@ class SignalRow extends HTMLElement {
       el(
         "span",
         { class: "signal-name" },
-        el("span", { class: "signal-label" }, el("span", {}, head), el("span", {}, tail)),
+        el("span", { class: "signal-label" }, ...labelParts(this.label)),
         this.word,
       ),
     );
@@ -55,10 +55,11 @@ class SignalRow extends HTMLElement {
     if (isSame && seen.second === second) return;
     this.#seen = { signal, isLive, second, isEngaged };
     if (!this.spark) this.#build();
-    const [value, unit] = valueWords(this.name, signal, view.state.emergencyStop);
+    const [value, unit, aside] = valueWords(this.name, signal, view.state.emergencyStop);
     setText(this.value, value);
     setText(this.unit, unit);
-    this.#judge(signal, isLive, view.serverNow);
+    setAttribute(this.reading, "title", `${value} ${unit}`.trimEnd());
+    this.#judge(signal, aside, isLive, view.serverNow);
     this.spark.show(this.name, view);
     this.detail?.show(view);
   }
@@ -68,11 +69,11 @@ class SignalRow extends HTMLElement {
     this.value = el("span", { class: "value" });
     this.unit = el("span", { class: "unit" });
     this.age = el("span", { class: "age" });
-    const reading = el("span", {}, this.value, " ", this.unit);
-    this.button.append(this.spark, el("span", { class: "signal-reading" }, reading, this.age));
+    this.reading = el("span", {}, this.value, " ", this.unit);
+    this.button.append(this.spark, el("span", { class: "signal-reading" }, this.reading, this.age));
   }
 
-  #judge(signal, isLive, now) {
+  #judge(signal, aside, isLive, now) {
     const { level, text } = verdict(signal, isLive, now);
     setAttribute(this, "data-level", level);
     setAttribute(this, "data-severity", signal.settings.severity);
@@ -80,13 +81,21 @@ class SignalRow extends HTMLElement {
     setAttribute(this.shape.firstChild, "d", SHAPES[level]);
     setAttribute(this.shape.lastChild, "hidden", level !== "pending");
     if (level !== "pending") {
-      setText(this.age, ageWords(signal, isLive, now));
+      setText(this.age, ageWords(signal, isLive, now) || aside);
       return;
     }
     setText(this.age, pendingWords(signal.pending, now));
     const share = pendingFor(signal.pending, now) / signal.pending.needs_s;
     setAttribute(this.shape.lastChild, "stroke-dasharray", `${Math.round(share * 100)} 100`);
   }
+}
+
+/** The name; a long one in two parts for the eye and in one for the ear. */
+function labelParts(label) {
+  if (label.length <= LONG) return [el("span", {}, label)];
+  const parts = [label.slice(0, -TAIL), label.slice(-TAIL)];
+  const seen = parts.map((text) => el("span", { "aria-hidden": "true" }, text));
+  return [el("span", { class: "visually-hidden" }, label), ...seen];
 }
 
 /** A shape, and the ring of a pending error, which fills. */

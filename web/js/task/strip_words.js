@@ -28,22 +28,23 @@ export function stripWords(state, { at }) {
   if (state.systemState === null) return said("UNKNOWN", "late", "Nothing was received yet.", []);
   if (!task) return said("NO TASK", "idle", "The vehicle has no path to drive.", [speed]);
   const [word, symbol] = LOOKS[task.status];
-  const name = `task ${task.id}`;
   const controller = controllerName(task.controller);
   if (task.ended_at)
-    return { word, symbol, name, controller, way: endLine(task), more: pastLine(task), readings: [speed] };
+    return { word, symbol, name: `task ${task.id}`, controller, way: endLine(task), more: pastLine(task), readings: [speed] };
   const error = ["Off path", offPath(task.cross_track_error_m)];
   const way = capital(waypointWords(task));
-  const readings = [etaReading(task, at), error, speed];
-  return { word, symbol, name, controller, way, more: percent(task.progress), readings };
+  // Held, it stands: there is more to say of what holds it.
+  const readings = task.status === "PAUSED" ? [speed] : [etaReading(task, at), error, speed];
+  const name = `task ${task.id}, ${percent(task.progress)}`;
+  return { word, symbol, name, controller, way, more: "", readings };
 }
 
-/** "Held by gate: the gate is shut, +2 more"; empty where nothing holds. */
+/** "By gate: the gate is shut, +2 more", after the word HELD; empty where nothing holds. */
 export function heldWords(holds) {
   const [first] = holds;
   if (!first) return "";
   const more = holds.length > 1 ? `, +${holds.length - 1} more` : "";
-  return `Held by ${holdWords(first)}${more}`;
+  return `By ${holdWords(first)}${more}`;
 }
 
 export function holdWords({ owner, reason }) {

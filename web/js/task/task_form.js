@@ -16,6 +16,7 @@ const UPLOAD_MS = 30_000;
 // More than the largest valid track; a video dropped by mistake is not even read.
 const MOST_BYTES = 32 * 2 ** 20;
 const LINE_SHOWN = 60;
+const FILE_WORDS = "x and y in m, and headings if there are any";
 const HEADINGS = {
   "": "what fits the path",
   rad: "radians",
@@ -102,6 +103,7 @@ class TaskForm extends HTMLElement {
     setAttribute(this.examples, "hidden", !track || task !== null || this.#file !== null);
     setText(this.example.firstChild, `Drive the example ${track?.name ?? ""}`);
     setText(this.exampleTitle, track?.title ?? "");
+    setText(this.fileName, this.#file?.name ?? FILE_WORDS);
     const hint = this.#hints().join(" ");
     const asksHeading = hint.includes("?heading=") || this.heading.value !== "";
     setAttribute(this.headingField, "hidden", !asksHeading);
@@ -130,12 +132,13 @@ class TaskForm extends HTMLElement {
       "aria-label": "Choose a CSV",
       onchange: () => this.#chosen(),
     });
+    this.fileName = el("span", { class: "quiet" });
     return el(
       "label",
       { class: "drop" },
       this.choose,
       el("span", { class: "as-button" }, "Choose a CSV"),
-      el("span", { class: "quiet" }, "or drop one anywhere: x and y in m, perhaps headings"),
+      this.fileName,
     );
   }
 
@@ -295,7 +298,7 @@ class TaskForm extends HTMLElement {
       return el("li", { class: "warning" }, `⚠ ${message}${place}${todo}`);
     });
     return [
-      el("h3", {}, `Preview of ${this.#file.name}`),
+      el("h3", {}, "Preview"),
       el("ul", {}, ...lines.map((line) => el("li", {}, line)), ...warnings),
     ];
   }

@@ -54,11 +54,11 @@ class TaskStrip extends HTMLElement {
       "onph-held": () => this.#ask(this.cancel.button, "DELETE", "/tasks/current"),
     });
     const fresh = { class: "new-task", "aria-label": "New task", "aria-expanded": "false" };
-    this.freshText = el("span");
     this.fresh = el(
       "button",
       { type: "button", title: "New task", onclick: () => this.#toggle(), ...fresh },
-      this.freshText,
+      el("span", { class: "long" }, "New task"),
+      el("span", { class: "short" }, "+"),
     );
     return el("div", { class: "task-buttons" }, this.pause, this.resume, this.cancel, this.fresh);
   }
@@ -80,10 +80,11 @@ class TaskStrip extends HTMLElement {
     const holds = Object.values(state.holds);
     const words = stripWords(state, { at: serverNow });
     setAttribute(this, "data-status", state.task?.status ?? "NONE");
+    setAttribute(this, "data-current", task !== null);
     renderOnce(this.symbol, words.symbol, () => [icon(words.symbol)]);
     setText(this.word, words.word);
-    const then = contact.level === "lost" && state.at ? `as of ${timeOfDay(state.at)}` : "";
-    setText(this.name, [words.name, then].filter(Boolean).join(", "));
+    const then = contact.level === "lost" && state.at ? `as of ${timeOfDay(state.at)}` : null;
+    setText(this.name, then ?? words.name);
     setAttribute(this.name, "title", words.controller);
     const held = task ? heldWords(holds) || (task.reason ?? "") : "";
     setText(this.way, held || words.way);
@@ -98,6 +99,7 @@ class TaskStrip extends HTMLElement {
     setText(this.told, ended || (task ? spokenWords(task) : ""));
   }
 
+  /** The cells stay while their names do, so that only figures change. */
   #showReadings(readings) {
     const names = readings.map(([name]) => name).join();
     renderOnce(this.readings, names, () =>
@@ -111,7 +113,6 @@ class TaskStrip extends HTMLElement {
     setAttribute(this.pause, "hidden", task === null || Boolean(this.resumed));
     setAttribute(this.resume, "hidden", task === null || !this.resumed);
     setAttribute(this.cancel, "hidden", task === null);
-    setText(this.freshText, task ? "+" : "New task");
     this.resume.volatile = volatile;
     for (const button of [this.pause, this.resume, this.cancel, this.fresh]) button.disabled = !enabled;
   }

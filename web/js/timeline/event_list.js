@@ -31,11 +31,10 @@ class EventList extends HTMLElement {
     });
     this.earlier = el("button", { class: "small", hidden: true }, "Earlier");
     this.failure = el("p", { class: "hint", role: "status" });
+    const details = el("label", { class: "switch" }, this.details, el("span", {}, "Show details"));
     this.append(
-      el("label", { class: "switch" }, this.details, el("span", {}, "Show details")),
+      el("div", { class: "event-bar" }, details, this.earlier, this.failure),
       this.list,
-      this.earlier,
-      this.failure,
     );
     this.details.addEventListener("change", () => this.#render());
     this.earlier.addEventListener("click", () => this.#showEarlier());

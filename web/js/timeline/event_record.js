@@ -1,15 +1,15 @@
 /** The events that the timeline shows: those of the log, and those of the stream as they come. */
 
 import { request } from "/web/js/base/api.js";
-import { emptyState, fold } from "/web/js/base/store.js";
 import { commonGroups, groupOfPart } from "/web/js/timeline/event_groups.js";
 
-const PAGE = 1000;
+const [FIRST_PAGE, PAGE] = [200, 1000];
+/** So many of those before the shown time tell how it was when that began. */
+const EARLIER = 200;
 /** Of one group; a span with more shows only the newest. */
 export const MOST_EVENTS = 3000;
 const KEPT_EVENTS = 2 * MOST_EVENTS;
 const RETRY_MS = 10_000;
-const FRAME_MS = 60_000;
 
 export class EventRecord {
   #groups = commonGroups();
@@ -18,8 +18,6 @@ export class EventRecord {
   #epoch = null;
   #lastFrameAt = 0;
   #runEnds = new Map();
-  #seed = null;
-  #seedAskedFor = null;
   #beginAt = null;
   #blockedUntil = 0;
   /** Why something could not be loaded; empty if it was. */
@@ -66,14 +64,18 @@ export class EventRecord {
     if (wasMissed) this.#reload();
     let isNew = false;
     for (const event of fresh.reverse())
-      for (const group of Object.values(this.#groups)) isNew = take(group, event) || isNew;
+      for (const group of Object.values(this.#groups)) isNew = append(group, event) || isNew;
     if (isNew) this.version += 1;
   }
 
   /** What `lanesOf` takes: all that is known from `from` on. */
   known(from, live) {
-    const seed = this.#seed?.at === from ? this.#seed.state : null;
-    return { from, groups: this.#groups, dark: this.#dark(from), seed, live };
+    const restarts = this.#restarts(from);
+    const begins = restarts.filter(({ end }) => end <= from).map(({ end }) => end);
+    const dark = restarts.filter(({ end }) => end > from);
+    const text = "nothing is recorded of this time";
+    if (this.#beginAt > from) dark.unshift({ begin: -Infinity, end: this.#beginAt, text });
+    return { from, groups: this.#groups, dark, live, runBegin: Math.max(-Infinity, ...begins) };
   }
 
   /** The time from which all groups are loaded, but for those of parts. */
@@ -82,24 +84,8 @@ export class EventRecord {
     return Math.max(-Infinity, ...groups.map(([, { isFull, from }]) => (isFull ? -Infinity : from)));
   }
 
-  /** Ask for the state at `from`, which only a run that ended before now does not tell. */
-  async loadSeed(from) {
-    const hasEnds = this.restarts().some(({ end }) => end > from);
-    const isBefore = this.#beginAt !== null && this.#beginAt > from;
-    if (!hasEnds || isBefore || this.#seedAskedFor === from) return;
-    this.#seedAskedFor = from;
-    const path = `/frames?at=${new Date(from).toISOString()}`;
-    try {
-      const frame = await request("GET", path, undefined, { timeoutMs: FRAME_MS });
-      this.#seed = { at: from, state: fold(emptyState(), frame) };
-      this.#changed();
-    } catch {
-      // Without it what was before the first event stays hatched, as not known.
-    }
-  }
-
   /** Between the last event of a run and the first of the next nothing is known. */
-  restarts() {
+  #restarts(from) {
     const runs = new Map();
     for (const { events } of Object.values(this.#groups))
       for (const { epoch, at, id } of events) {
@@ -113,17 +99,10 @@ export class EventRecord {
     return inOrder.slice(1).map((run, n) => {
       const before = inOrder[n];
       const end = this.#runEnds.get(before.epoch);
-      if (end === undefined) this.#loadRunEnd(before.epoch, run.first);
-      return { begin: Math.max(before.end, end ?? 0), end: run.begin, isRestart: true };
+      if (end === undefined && run.begin > from) this.#loadRunEnd(before.epoch, run.first);
+      const text = "the service did not run, or nothing was recorded";
+      return { begin: Math.max(before.end, end ?? 0), end: run.begin, isRestart: true, text };
     });
-  }
-
-  #dark(from) {
-    const dark = this.restarts().filter(({ end }) => end > from);
-    for (const gap of dark) gap.text = "the service did not run, or nothing was recorded";
-    if (this.#beginAt !== null && this.#beginAt > from)
-      dark.unshift({ begin: -Infinity, end: this.#beginAt, text: "nothing is recorded of this time" });
-    return dark;
   }
 
   /** Without a folder of data each run begins the log anew. */
@@ -143,21 +122,16 @@ export class EventRecord {
   async #loadGroup(group, from) {
     let before = group.isStale ? undefined : group.events[0]?.id;
     Object.assign(group, { isLoading: true, isStale: false });
-    const found = [];
+    let found = [];
     try {
-      while (found.length < MOST_EVENTS) {
+      for (let limit = FIRST_PAGE; ; limit = PAGE) {
         const end = before === undefined ? "" : `&before=${before}`;
-        const begin = new Date(Math.floor(from)).toISOString();
-        const path = `/events?${group.query}&from_at=${begin}&limit=${PAGE}${end}`;
-        const { items } = await request("GET", path);
-        found.unshift(...items);
-        if (items.length < PAGE) break;
+        const { items } = await request("GET", `/events?${group.query}&limit=${limit}${end}`);
+        found = [...items, ...found];
+        if (items.length < limit || timeOf(items[0]) < from || found.length >= MOST_EVENTS) break;
         before = items[0].id;
       }
-      group.isFull = found.length >= MOST_EVENTS;
-      group.from = group.isFull ? Date.parse(found[0].at) : from;
-      const last = found.at(-1)?.id ?? 0;
-      group.events = [...found, ...group.events.filter(({ id }) => id > last)];
+      take(group, found, from);
       this.problem = "";
     } catch (error) {
       this.problem = error.message;
@@ -208,13 +182,27 @@ function isWanting({ from, isFull, isStale, isLoading }, wanted) {
   return !isLoading && (isStale || (from > wanted && !isFull));
 }
 
+function timeOf({ at }) {
+  return Date.parse(at);
+}
+
+/** Put what was loaded before what came meanwhile. */
+function take(group, found, from) {
+  const last = found.at(-1)?.id ?? 0;
+  const first = Math.max(0, found.findIndex((event) => timeOf(event) >= from) - EARLIER);
+  const isAll = found.length < MOST_EVENTS || timeOf(found[0]) < from;
+  group.isFull = !isAll;
+  group.from = isAll ? from : timeOf(found[0]);
+  group.events = [...found.slice(first), ...group.events.filter(({ id }) => id > last)];
+}
+
 /** Add an event to the group that shows it; the oldest are dropped from one that grew too large. */
-function take(group, event) {
+function append(group, event) {
   if (!group.takes(event) || group.events.at(-1)?.id >= event.id) return false;
   group.events.push(event);
   if (group.events.length > KEPT_EVENTS) {
     group.events = group.events.slice(-MOST_EVENTS);
-    group.from = Date.parse(group.events[0].at);
+    group.from = timeOf(group.events[0]);
     group.isFull = true;
   }
   return true;

@@ -1,9 +1,9 @@
 /** What happened, as intervals on lanes: pure functions. Times are in ms since 1970.
  *
- * A record is what is known: `{from, groups: {name: {events, from}}, dark, seed, live}`. `dark` are
+ * A record is what is known: `{from, groups: {name: {events, from}}, dark, runBegin, live}`. `dark` are
  * times of which nothing is known, in order: the service did not run, or its events were lost. A
- * value is never carried across one of them. `seed` is the state at `from`, or null; `live` that of
- * now. An interval is `{begin, end, text, tone}`; one that lasts has `end` Infinity, and one of which
+ * value is never carried across one of them. Events between `runBegin` and `from` tell how it was at
+ * `from`; `live` is the state now. An interval is `{begin, end, text, tone}`; one that lasts has `end` Infinity, and one of which
  * the begin was not seen is `cut`.
  */
 
@@ -58,14 +58,14 @@ export function knownTimes({ from, dark }) {
 }
 
 /** One value at a time. A change is `{at, value, was}`; `undefined` is a value that is not known. */
-export function valueLane(record, group, changes, { seed, current }) {
+export function valueLane(record, group, changes, current) {
   const lane = { intervals: [], unknown: [] };
   for (const time of knownTimes(record)) {
     const begin = shownFrom(lane, time, group);
     const own = changes.filter(({ at }) => at >= begin && at <= time.end);
-    const isFirst = begin === record.from && seed !== undefined;
+    const before = changes.findLast((change) => isBefore(record, begin, change.at));
     const lasts = own.length === 0 && time.isLast;
-    let [at, value] = [begin, isFirst ? seed : lasts ? current : own[0]?.was];
+    let [at, value] = [begin, before ? before.value : lasts ? current : own[0]?.was];
     for (const change of own) {
       // What lasted less than a millisecond was there all the same.
       if (change.at > at || change !== own[0]) put(lane, at, change.at, value);
@@ -77,15 +77,22 @@ export function valueLane(record, group, changes, { seed, current }) {
   return lane;
 }
 
+/** Whether a time is in the same run as a begin of the record, and before it. */
+function isBefore(record, begin, at) {
+  return begin === record.from && at >= record.runBegin && at < begin;
+}
+
 /** Any number at a time, each with a key. An act is `{at, key, value}`; without value it ends. */
-export function spanLane(record, group, acts, { seed, current }) {
+export function spanLane(record, group, acts, current) {
   const lane = { intervals: [], unknown: [] };
   for (const time of knownTimes(record)) {
     const begin = shownFrom(lane, time, group);
     const open = new Map();
-    if (begin === record.from)
-      for (const [key, value] of seed) open.set(key, { begin, cut: true, ...value });
     for (const act of acts) {
+      if (isBefore(record, begin, act.at)) {
+        if (act.value) open.set(act.key, { begin, cut: true, ...act.value });
+        else open.delete(act.key);
+      }
       if (act.at < begin || act.at > time.end) continue;
       const was = open.get(act.key) ?? { begin, cut: true, ...act.was };
       const isOn = open.delete(act.key);
@@ -127,15 +134,15 @@ function put(lane, begin, end, value) {
   else lane.intervals.push({ begin, end, ...value });
 }
 
-function stateLane({ seed, live, groups, ...record }) {
+function stateLane({ live, groups, ...record }) {
   const changes = groups.state.events.map(({ at, data }) => ({
     at: Date.parse(at),
     value: systemValue(data.state, data.errors),
     was: systemValue(data.was),
   }));
-  const now = ({ systemState }) => systemState && systemValue(systemState.state, systemState.errors);
-  const ends = { seed: (seed && now(seed)) ?? undefined, current: now(live) ?? undefined };
-  return { key: "state", name: "State", ...valueLane(record, groups.state, changes, ends) };
+  const { systemState } = live;
+  const now = systemState ? systemValue(systemState.state, systemState.errors) : undefined;
+  return { key: "state", name: "State", ...valueLane(record, groups.state, changes, now) };
 }
 
 function systemValue(state, errors = []) {
@@ -143,14 +150,14 @@ function systemValue(state, errors = []) {
   return { text, tone: SYSTEM_TONES[state] ?? "rest", short: state };
 }
 
-function taskLane({ seed, live, groups, ...record }) {
+function taskLane({ live, groups, ...record }) {
   const changes = [];
   for (const { kind, at, data } of groups.task.events) {
     const change = taskChange(kind, data);
     if (change) changes.push({ at: Date.parse(at), ...change });
   }
-  const ends = { seed: seed ? taskNow(seed) : undefined, current: taskNow(live) };
-  return { key: "task", name: "Task", ...valueLane(record, groups.task, changes, ends) };
+  const lane = valueLane(record, groups.task, changes, taskNow(live));
+  return { key: "task", name: "Task", ...lane };
 }
 
 function taskChange(kind, { task, reason }) {
@@ -174,7 +181,7 @@ function taskNow({ task }) {
 }
 
 /** Errors from which others follow; those stand in the words of Why. */
-function errorLane({ seed, live, groups, ...record }) {
+function errorLane({ live, groups, ...record }) {
   const acts = [];
   for (const { kind, at, data } of groups.errors.events) {
     const isRaised = kind === "error.raised";
@@ -183,15 +190,14 @@ function errorLane({ seed, live, groups, ...record }) {
     const was = errorValue({ ...known, ...data });
     acts.push({ at: Date.parse(at), key: nameOfError(data), value: isRaised ? was : null, was });
   }
-  const ends = { seed: errorsOn(seed), current: errorsOn(live) };
-  return { key: "errors", name: "Errors", ...spanLane(record, groups.errors, acts, ends) };
+  const lane = spanLane(record, groups.errors, acts, errorsOn(live));
+  return { key: "errors", name: "Errors", ...lane };
 }
 
-function errorsOn(state) {
-  if (!state) return [];
+function errorsOn({ errors }) {
   const isOn = ({ state: is, root_cause }) =>
     root_cause && ["active", "acknowledged", "latched"].includes(is);
-  const on = Object.values(state.errors).filter(isOn);
+  const on = Object.values(errors).filter(isOn);
   return on.map((error) => [
     nameOfError(error),
     { since: Date.parse(error.since_at), ...errorValue(error) },
@@ -210,7 +216,7 @@ function errorValue(error) {
   return { text: error.message ? `${name}: ${error.message}` : name, short: name, tone };
 }
 
-function holdLane({ seed, live, groups, ...record }) {
+function holdLane({ live, groups, ...record }) {
   const acts = [];
   for (const { kind, at, data } of groups.holds.events) {
     if (kind !== "hold.set" && kind !== "hold.released") continue;
@@ -218,13 +224,12 @@ function holdLane({ seed, live, groups, ...record }) {
     const value = kind === "hold.set" ? was : null;
     acts.push({ at: Date.parse(at), key: data.owner, value, was });
   }
-  const ends = { seed: holdsOn(seed), current: holdsOn(live) };
-  return { key: "holds", name: "Holds", ...spanLane(record, groups.holds, acts, ends) };
+  const lane = spanLane(record, groups.holds, acts, holdsOn(live));
+  return { key: "holds", name: "Holds", ...lane };
 }
 
-function holdsOn(state) {
-  const holds = Object.values(state?.holds ?? {});
-  return holds.map((hold) => [hold.owner, { since: Date.parse(hold.since_at), ...holdValue(hold) }]);
+function holdsOn({ holds }) {
+  return Object.values(holds).map((hold) => [hold.owner, { since: Date.parse(hold.since_at), ...holdValue(hold) }]);
 }
 
 /** A hold of an error says no more than its error does, which has a lane of its own. */
@@ -233,19 +238,17 @@ function holdValue({ owner, reason }) {
   return { text: `hold ${owner}${reason ? `: ${reason}` : ""}`, short: owner, tone };
 }
 
-function partLane({ seed, live, groups, ...record }, part) {
+function partLane({ live, groups, ...record }, part) {
   const group = groups[`part:${part}`] ?? { events: [], from: Infinity };
   const changes = group.events.map(({ at, data }) => ({
     at: Date.parse(at),
     value: partValue(data.actual, data.reason),
     was: partValue(data.was),
   }));
-  const now = (state) => {
-    const actual = state?.parts[part]?.actual;
-    return actual ? partValue(actual.mode ? `${actual.state}.${actual.mode}` : actual.state) : undefined;
-  };
-  const ends = { seed: now(seed), current: now(live) };
-  return { key: `part:${part}`, name: part, ...valueLane(record, group, changes, ends) };
+  const actual = live.parts[part]?.actual;
+  const now = actual?.mode ? `${actual.state}.${actual.mode}` : actual?.state;
+  const current = now === undefined ? undefined : partValue(now);
+  return { key: `part:${part}`, name: part, ...valueLane(record, group, changes, current) };
 }
 
 function partValue(actual, reason) {

@@ -47,7 +47,9 @@ export function marksOf(intervals, scale) {
     const right = Math.max(Math.round(xOf(scale, end)), left + MIN_PX);
     const last = marks.at(-1);
     const x0 = Math.max(left, last?.x1 ?? 0);
-    if (last && right - x0 < MIN_PX) join(last, interval, right);
+    // Neighbours may be a mark's width too near; what overlaps by more is not one after the other.
+    const isHidden = last && (right - x0 < MIN_PX || last.x1 - left > MIN_PX);
+    if (isHidden) join(last, interval, right);
     else marks.push({ x0, x1: right, tone: interval.tone, items: [interval] });
   }
   return marks;

@@ -53,11 +53,10 @@ class Timeline extends HTMLElement {
     this.bar = new Toolbar({
       span: (span) => this.#look({ ...this.#range, span }),
       zoom: (factor) => this.#zoom(factor, this.lanes.width / 2),
-      now: () => this.#look({ ...this.#range, end: null }),
+      now: () => this.#follow(),
       table: () => this.#toggleTable(),
       save: (button) => this.#save(button),
       step: (way) => this.#step(way),
-      release: () => this.#release(),
       tab: (name) => this.#show(name),
     });
     this.lanes = new LanesView(() => this.#ask());
@@ -106,14 +105,15 @@ class Timeline extends HTMLElement {
       pan: (way) => this.#pan(-way * this.lanes.width * 0.25),
       zoom: (factor) => this.#zoom(factor, this.#cursorX()),
       begin: () => this.#toEdge(0),
-      now: () => this.#look({ ...this.#range, end: null }),
+      now: () => this.#follow(),
     };
     canvas.addEventListener("keydown", keysOf(act));
     canvas.addEventListener("focus", () => this.#focus());
     canvas.addEventListener("blur", () => this.#point(null));
     document.addEventListener("keydown", (event) => {
       const isPinned = this.#pending !== null || this.#view?.moment;
-      if (event.key === "Escape" && !event.defaultPrevented && isPinned) this.#release();
+      // With Shift it is the key of STOP.
+      if (event.key === "Escape" && !event.shiftKey && isPinned) this.#release();
     });
     document.addEventListener("ph-show-moment", ({ detail }) => this.#showMoment(detail.at));
     new IntersectionObserver(([{ isIntersecting }]) => {
@@ -177,7 +177,6 @@ class Timeline extends HTMLElement {
     this.#dark = contact.level === "lost" ? [...known.dark, unheard(live)] : known.dark;
     this.#lanes = from === Infinity ? [] : lanesOf({ ...known, dark: this.#dark }, names);
     this.#edges = edgesOf(this.#lanes);
-    if (from !== Infinity) this.#record.loadSeed(from);
   }
 
   /** A little more than is seen is loaded, so that not each pixel of a move asks again. */
@@ -238,6 +237,12 @@ class Timeline extends HTMLElement {
   #look(range) {
     this.#range = range;
     this.#ask();
+  }
+
+  /** Now is where live is. */
+  #follow() {
+    if (this.#pinned !== null) this.#release();
+    this.#look({ ...this.#range, end: null });
   }
 
   #zoom(factor, x) {

@@ -4,7 +4,7 @@ import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { SPANS } from "/web/js/timeline/range.js";
 
 export class Toolbar {
-  /** @param act `{span(ms), zoom(factor), now(), table(), save(button), step(way), release(), tab(name)}` */
+  /** @param act `{span(ms), zoom(factor), now(), table(), save(button), step(way), tab(name)}` */
   constructor(act) {
     this.tabs = ["timeline", "log"].map((name) => tabOf(name, act));
     this.spans = SPANS.map(([span, text]) =>
@@ -29,7 +29,6 @@ export class Toolbar {
       this.when,
       step("◀", "Show the previous event (left arrow)", () => act.step(-1)),
       step("▶", "Show the next event (right arrow)", () => act.step(1)),
-      el("button", { type: "button", class: "live", title: "Escape", onclick: () => act.release() }, "Back to live"),
     );
     this.root = el(
       "div",

@@ -1,4 +1,5 @@
 import errno
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -8,11 +9,12 @@ import pytest
 from api import distribution
 from api.cli import command_line
 from api.cli.command_line import main
+from api.cli.parser import GROUPS, places
 from api.client.outcomes import Outcome
 
 Output = pytest.CaptureFixture[str]
 
-COMMANDS = ("serve", "monitor", "check", "mode", "state", "task", "simulate", "replay", "export")
+COMMANDS = tuple(places())
 
 
 def exit_code(*arguments: str) -> int:
@@ -24,12 +26,15 @@ def exit_code(*arguments: str) -> int:
 
 
 def test_without_a_command_it_says_what_there_is(capsys: Output) -> None:
-    assert main([]) == 2
+    assert main([]) == 64
 
     told = capsys.readouterr().out
     assert [line for line in told.splitlines() if len(line) > 80] == []
-    for command in COMMANDS:
-        assert f"pilothouse {command} " in told
+    for group, commands in GROUPS.items():
+        listed = told.partition(f"{group}:\n")[2].partition("\n\n")[0]
+        assert [line.split()[0] for line in listed.splitlines()] == list(commands)
+    for code in ("0", "1", "2", "64", "130"):
+        assert re.search(rf"^  {code} +\w", told, re.MULTILINE)
 
 
 def test_it_tells_its_version(capsys: Output) -> None:
@@ -65,26 +70,48 @@ def test_each_command_explains_itself_in_80_columns(
         (["task", "a.csv", "--speed", "fast"], "invalid float value"),
         (["simulate"], "SCENARIO"),
         (["simulate", "a.yaml", "--format", "xml"], "invalid choice"),
+        (["shelve", "ESTOP"], "say why"),
+        (["shelve", "ESTOP", "--reason", "x", "--for", "5d"], "invalid time '5d'"),
+        (["release", "operator", "--reason", "x"], "for the emergency stop"),
+        (["events", "--limit", "0"], "expected 1 to 1000"),
+        (["completion", "tcsh"], "invalid choice"),
         (["monitor", "--format", "xml"], "invalid choice"),
         (["fly"], "invalid choice"),
     ],
 )
-def test_a_misspelt_command_is_told_and_ends_with_two(
+def test_a_misspelt_command_line_has_an_exit_code_of_its_own(
     arguments: list[str], words: str, capsys: Output
 ) -> None:
-    assert exit_code(*arguments) == 2
+    assert exit_code(*arguments) == 64
     assert words in capsys.readouterr().err
 
 
+HEAVY = {"asyncio", "domain", "fastapi", "httpx", "numpy", "pydantic", "rich", "websockets"}
+
+
+def loaded_after(statement: str) -> set[str]:
+    """Return what a process has imported after a statement, which may not print."""
+    code = f"import sys; from api.cli.command_line import main; {statement}; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(done.stdout.split())
+
+
 def test_help_is_quick_since_nothing_is_imported_that_it_does_not_need() -> None:
-    code = "import sys, api.cli.command_line; print(*sys.modules)"
-    loaded = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    ).stdout.split()
+    loaded = loaded_after("from api.cli.parser import make_parser, places; make_parser(places())")
 
     assert "api.cli.commands.monitor" in loaded
-    heavy = {"asyncio", "domain", "fastapi", "httpx", "numpy", "pydantic", "rich", "websockets"}
-    assert heavy.isdisjoint(loaded)
+    assert HEAVY.isdisjoint(loaded)
+
+
+def test_a_stop_loads_no_other_command_and_no_library() -> None:
+    loaded = loaded_after("main(['stop', '--url', 'http://127.0.0.1:1', '--retry', '0'])")
+
+    assert "api.client.bare_request" in loaded
+    assert HEAVY.isdisjoint(loaded)
+    assert {name for name in loaded if name.startswith("api.cli.commands.")} == {
+        "api.cli.commands.command",
+        "api.cli.commands.stop",
+    }
 
 
 def test_ctrl_c_ends_without_a_trace(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
@@ -103,7 +130,7 @@ def test_a_foreign_package_is_told_before_anything_is_done(
     def find_foreign() -> None:
         raise distribution.ForeignPackageError("domain", "it lies elsewhere")
 
-    monkeypatch.setattr(command_line, "check_packages", find_foreign)
+    monkeypatch.setattr(distribution, "check_packages", find_foreign)
 
     assert main(["check", "robot.yaml"]) == 1
     told = capsys.readouterr().err
@@ -117,6 +144,8 @@ def test_a_foreign_package_is_told_before_anything_is_done(
         (("chek", "x"), "check"),
         (("serve", "--prot", "1"), "--port"),
         (("monitor", "--onec"), "--once"),
+        (("stpo",), "stop"),
+        (("hodl", "lunch"), "hold"),
         (("state", "drive_base", "activat"), "activate"),
         (("serve", "--log-level", "debg"), "debug"),
     ],
@@ -124,7 +153,7 @@ def test_a_foreign_package_is_told_before_anything_is_done(
 def test_what_is_mistyped_is_answered_with_what_was_meant(
     typed: tuple[str, ...], meant: str, capsys: Output
 ) -> None:
-    assert exit_code(*typed) == 2
+    assert exit_code(*typed) == 64
     assert capsys.readouterr().err.endswith(f"; did you mean {meant}?\n")
 
 

@@ -59,11 +59,10 @@ def test_a_name_with_slashes_keeps_them_and_nothing_else_gets_into_the_path(
 
 
 def test_a_part_that_does_not_exist_is_said_of_both_kinds(service: Service) -> None:
-    hint = "known: drive_base, manipulator; did you mean drive_base?"
-    service.answers["GET /systems/drivebase"] = problem(
-        404, "UNKNOWN_PART", hint="known: actuation"
-    )
-    service.answers["GET /nodes/drivebase"] = problem(404, "UNKNOWN_PART", hint=hint)
+    for kind, names in (("systems", ["actuation"]), ("nodes", ["drive_base", "manipulator"])):
+        items = [{"name": name} for name in names]
+        service.answers[f"GET /{kind}/drivebase"] = problem(404, "UNKNOWN_PART")
+        service.answers[f"GET /{kind}"] = httpx.Response(200, json={"items": items})
 
     with pytest.raises(ServiceProblemError, match="no system or node 'drivebase'") as unknown:
         service.client().path_of("drivebase")

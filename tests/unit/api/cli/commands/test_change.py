@@ -4,6 +4,7 @@ from typing import Any
 import httpx
 import pytest
 
+from api.cli.change_report import TextReport
 from api.cli.command_line import main
 from api.cli.commands.change import change, show_plan
 from api.client.address import Address
@@ -62,8 +63,9 @@ def service() -> Service:
 def run(service: Service, *views: dict[str, Any], wait_s: float = 60) -> tuple[Outcome, list[str]]:
     said: list[str] = []
     service.views = iter(views)
+    report = TextReport(said.append)
     outcome = change(
-        service.client(), "actuation", "mode", MODE, wait_s, said.append, pause=lambda _: None
+        service.client(), "actuation", "mode", MODE, wait_s, report, pause=lambda _: None
     )
     return outcome, said
 
@@ -151,7 +153,7 @@ def test_a_dry_run_in_stages_says_them_and_how_long_it_takes(service: Service) -
     service.answers["POST /systems/actuation/mode?dry_run=true"] = answer
     said: list[str] = []
 
-    show_plan(service.client(), "actuation", "mode", MODE, said.append)
+    show_plan(service.client(), "actuation", "mode", MODE, "text", said.append)
 
     assert said == [
         "stage 0: would activate drive_base",
@@ -170,9 +172,8 @@ def test_a_request_that_waits_says_for_what_and_is_followed(service: Service) ->
     )
     said: list[str] = []
 
-    outcome = change(
-        service.client(), "actuation", "mode", MODE, 60, said.append, pause=lambda _: None
-    )
+    report = TextReport(said.append)
+    outcome = change(service.client(), "actuation", "mode", MODE, 60, report, pause=lambda _: None)
 
     assert outcome is Outcome.SUCCEEDED
     assert said[0] == "waits: battery_level is 0.2, needs >= 0.3"
@@ -186,7 +187,7 @@ def test_a_dry_run_says_the_steps_and_changes_nothing(service: Service) -> None:
     service.answers[asked] = httpx.Response(200, json=_plan(steps))
     said: list[str] = []
 
-    outcome = show_plan(service.client(), "actuation", "mode", MODE, said.append)
+    outcome = show_plan(service.client(), "actuation", "mode", MODE, "text", said.append)
 
     assert outcome is Outcome.SUCCEEDED
     assert said == ["would configure arm", "would set parameters arm"]
@@ -198,7 +199,7 @@ def test_a_dry_run_without_steps_says_that_all_is_well(service: Service) -> None
     service.answers["POST /systems/actuation/mode?dry_run=true"] = answer
     said: list[str] = []
 
-    show_plan(service.client(), "actuation", "mode", MODE, said.append)
+    show_plan(service.client(), "actuation", "mode", MODE, "text", said.append)
 
     assert said == ["actuation is there already: no step is needed"]
 

@@ -92,4 +92,4 @@ def test_a_dry_run_asks_for_the_steps_only(monkeypatch: pytest.MonkeyPatch) -> N
 
     assert main(["mode", "actuation", "FAST", "--dry-run"]) == 0
 
-    assert given == [("actuation", "mode", {"mode": "FAST"})]
+    assert given == [("actuation", "mode", {"mode": "FAST"}, "text")]

@@ -103,7 +103,7 @@ def test_an_unknown_part_is_refused(service: Service) -> None:
     ("text", "time_s"), [("90", 90), ("90s", 90), ("10min", 600), ("8h", 28_800)]
 )
 def test_a_time_has_a_unit(text: str, time_s: float) -> None:
-    assert errors.shelf_time(text) == time_s
+    assert command.span(text) == time_s
 
 
 @pytest.mark.parametrize("text", ["", "soon", "5 d", "10m"])

@@ -56,5 +56,5 @@ def test_profile_rejects_what_makes_no_sense(
     with pytest.raises(SystemExit) as ended:
         main(["profile", *options])
 
-    assert ended.value.code == 2
+    assert ended.value.code == 64
     assert complaint in capsys.readouterr().err

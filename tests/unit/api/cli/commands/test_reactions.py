@@ -98,7 +98,9 @@ def test_a_reaction_is_armed_with_a_reason_and_acknowledged(service: Service) ->
 
 def test_an_unknown_reaction_changes_nothing(service: Service, capsys: Output) -> None:
     assert main(["reactions", "--arm", "LIMP=passive", "--ack", "NONE"]) == 1
-    assert "there is no reaction 'NONE'; known: LIMP, HALT" in capsys.readouterr().err
+    assert capsys.readouterr().err == (
+        "rejected: there is no reaction 'NONE'\n  hint: known: LIMP, HALT\n"
+    )
     assert service.writes == []
 
 
@@ -107,4 +109,4 @@ def test_what_is_no_arming_is_rejected(service: Service, text: str) -> None:
     with pytest.raises(SystemExit) as misuse:
         main(["reactions", "--arm", text])
 
-    assert misuse.value.code == 2
+    assert misuse.value.code == 64

@@ -112,7 +112,7 @@ def test_a_page_is_shown_at_a_speed_that_can_be_followed(
     with pytest.raises(SystemExit) as ended:
         main(["replay", str(data), "--page", "--speed", speed])
 
-    assert ended.value.code == 2
+    assert ended.value.code == 64
     assert "--speed" in capsys.readouterr().err
 
 

@@ -268,7 +268,7 @@ def test_the_current_task_is_canceled(service: Service) -> None:
     service.by_id = httpx.Response(200, json=ended)
     said: list[str] = []
 
-    assert cancel(service.client, said.append) is Outcome.SUCCEEDED
+    assert cancel(service.client, "text", said.append) is Outcome.SUCCEEDED
     assert said == ["task t1 after 4.0 of 10.0 m: canceled"]
     assert service.paths[1] == "DELETE /tasks/current"
 
@@ -276,7 +276,7 @@ def test_the_current_task_is_canceled(service: Service) -> None:
 def test_to_cancel_nothing_is_no_failure(service: Service) -> None:
     said: list[str] = []
 
-    assert cancel(service.client, said.append) is Outcome.SUCCEEDED
+    assert cancel(service.client, "text", said.append) is Outcome.SUCCEEDED
     assert said == ["there is no task to cancel"]
 
 
@@ -284,7 +284,7 @@ def test_a_refusal_to_tell_the_task_is_handed_on(service: Service) -> None:
     service.current = problem(403)
 
     with pytest.raises(ServiceProblemError):
-        cancel(service.client, print)
+        cancel(service.client, "text", print)
 
 
 # --- the command line ----------------------------------------------------------------------------
@@ -321,7 +321,7 @@ def test_task_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> None
 def test_task_cancels_where_it_is_told_to(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
 
-    def cancel(client: ServiceClient, _: object) -> Outcome:
+    def cancel(client: ServiceClient, *_: object) -> Outcome:
         asked.append(client.address.url)
         return Outcome.SUCCEEDED
 

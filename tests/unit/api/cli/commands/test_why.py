@@ -9,7 +9,7 @@ import pytest
 from api.cli.command_line import main
 from api.cli.commands.why import reason_lines, why, why_not
 from api.client.address import Address
-from api.client.outcomes import Outcome
+from api.client.outcomes import Outcome, ServiceProblemError
 from api.client.service_client import ServiceClient
 
 
@@ -107,8 +107,11 @@ def test_a_mode_that_can_be_entered_ends_with_success() -> None:
 
 def test_an_unknown_mode_is_answered_with_those_that_there_are() -> None:
     said: list[str] = []
-    assert why_not(_client(HERE), "actuation", "FAST", "text", said.append) is Outcome.FAILED
-    assert said == ["actuation has no mode 'FAST'; its modes: MODERATE, PERFORMANCE"]
+    with pytest.raises(ServiceProblemError, match="no mode of actuation 'PERFORMANC'") as unknown:
+        why_not(_client(HERE), "actuation", "PERFORMANC", "text", said.append)
+    assert unknown.value.problem["hint"] == (
+        "known: MODERATE, PERFORMANCE; did you mean PERFORMANCE?"
+    )
 
 
 def test_json_is_what_the_service_answers() -> None:

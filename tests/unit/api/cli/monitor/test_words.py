@@ -41,8 +41,8 @@ def test_only_something_that_is_inferred_has_a_star() -> None:
     ("given", "text"),
     [
         (signal("battery_level", 0.42, "ratio"), "42 %"),
-        (signal("battery_level", 0.4257, "ratio"), "42.57 %"),
-        (signal("temperature", 30.0, "°C"), "30 °C"),
+        (signal("battery_level", 0.4257, "ratio"), "42.6 %"),
+        (signal("temperature", 30.0, "°C"), "30.0 °C"),
         (signal("estop", value=True), "pressed"),
         (signal("estop", value=False), "not pressed"),
         (signal("lights", value=True), "yes"),
