@@ -89,7 +89,7 @@ def test_what_the_sentence_has_no_room_for_is_one_press_away(
     expect(more).to_be_visible()
     more.click()
     why = desktop.locator("#why")
-    expect(why).to_contain_text("temperature")
+    expect(why).to_contain_text("TEMPERATURE_HIGH")
     assert why.evaluate("(node) => node.contains(document.activeElement)")
 
 
