@@ -175,4 +175,6 @@ def test_the_menu_leads_to_the_documents_of_the_interface(desktop: Page) -> None
 def test_the_connection_tells_its_round_trip(desktop: Page) -> None:
     contact = header(desktop).locator(".contact")
     expect(contact).to_contain_text(re.compile(r"Connected\d+ ms"), timeout=SLOW_MS)
-    expect(contact).to_have_attribute("title", re.compile(r"Round trip \d+ ms; \d+ frames? skipped"))
+    expect(contact).to_have_attribute(
+        "title", re.compile(r"Round trip \d+ ms; \d+ frames? skipped")
+    )

@@ -39,9 +39,13 @@ class Typist:
 
     def until(self, key: str, name: str) -> None:
         """Press until what has the focus has that name."""
-        script = "document.activeElement.matches('a, button') ? document.activeElement.textContent : ''"
+        script = (
+            "document.activeElement.matches('a, button') ? document.activeElement.textContent : ''"
+        )
         while name not in self._page.evaluate(script):
-            assert self.count < KEYS_AT_MOST, self._page.evaluate("document.activeElement.outerHTML")
+            assert self.count < KEYS_AT_MOST, self._page.evaluate(
+                "document.activeElement.outerHTML"
+            )
             self.press(key)
 
 

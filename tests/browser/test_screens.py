@@ -141,4 +141,6 @@ def test_a_phone_shows_first_what_somebody_has_to_do(phone: Page, service: Servi
     status = phone.locator("main")
     expect(status.get_by_role("button", name=re.compile("Pause|Resume"))).to_be_in_viewport()
     expect(status.get_by_role("button", name="Release gate (hold)")).to_be_visible()
-    expect(status.locator("#pending")).to_contain_text(re.compile(r"GPS accuracy.*GPS_LOST in 1\d s"))
+    expect(status.locator("#pending")).to_contain_text(
+        re.compile(r"GPS accuracy.*GPS_LOST in 1\d s")
+    )
