@@ -34,7 +34,7 @@ def test_a_stream_that_falls_silent_is_late_after_1_s_and_lost_after_3_s(
     browser: Browser, service: Service
 ) -> None:
     page = browser.new_page()
-    is_silent = []
+    is_silent: list[bool] = []
 
     def between(socket: WebSocketRoute) -> None:
         server = socket.connect_to_server()
@@ -48,7 +48,8 @@ def test_a_stream_that_falls_silent_is_late_after_1_s_and_lost_after_3_s(
             window.levels = [];
             const note = () => {
                 const level = document.body.dataset.contact;
-                if (window.levels.at(-1)?.[0] !== level) window.levels.push([level, performance.now()]);
+                if (window.levels.at(-1)?.[0] === level) return;
+                window.levels.push([level, performance.now()]);
             };
             new MutationObserver(note).observe(document.body, { attributes: true });
             note();

@@ -9,8 +9,8 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.station import Complaints, Service
 from tests.browser.states import aborted, drive, patched
+from tests.browser.station import Complaints, Service
 
 pytestmark = pytest.mark.browser
 
