@@ -13,6 +13,7 @@ from tests.browser.driving import (
     button,
     canvas,
     choose,
+    expect_running,
     hold,
     open_sheet,
     sheet,
