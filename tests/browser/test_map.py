@@ -13,7 +13,6 @@ from tests.browser.driving import (
     button,
     canvas,
     choose,
-    expect_running,
     hold,
     open_sheet,
     sheet,
