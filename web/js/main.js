@@ -50,7 +50,7 @@ const elements = [
   ...document.querySelectorAll(
     "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
       "ph-why, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
-      "ph-signal-list, ph-timeline, ph-what-if",
+      "ph-pending-list, ph-signal-list, ph-timeline, ph-what-if",
   ),
 ];
 let state = emptyState();
