@@ -5,7 +5,7 @@ import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { detailWords } from "/web/js/base/problem.js";
 import { valueText } from "/web/js/base/signal_catalog.js";
 import { timeOfDay } from "/web/js/base/words.js";
-import { Chart } from "/web/js/signals/chart.js";
+import { Chart, showMoment } from "/web/js/signals/chart.js";
 import { factsOf, limitOf, noteOf } from "/web/js/signals/signal_facts.js";
 
 const MINUTE_MS = 60_000;
@@ -150,7 +150,7 @@ class SignalDetail extends HTMLElement {
         .map((point, index) => [point, items[index]])
         .filter((_, index) => index % each === 0)
         .map(([{ low, high, mid }, { at, error }]) =>
-          el("tr", {}, ...[timeOfDay(at), ...[low, high, mid].map((v) => this.#words(v)), error ?? ""].map(cell)),
+          el("tr", {}, timeCell(at), ...[low, high, mid].map((v) => cell(this.#words(v))), cell(error ?? "")),
         ),
     );
   }
@@ -160,6 +160,12 @@ class SignalDetail extends HTMLElement {
 function held(points, to, gap) {
   const last = points.at(-1);
   return last && to - last.at < gap ? [...points, { ...last, at: to }] : points;
+}
+
+function timeCell(at) {
+  const show = ({ target }) => showMoment(target, Date.parse(at));
+  const title = `Show ${timeOfDay(at)} in all panels`;
+  return el("td", {}, el("button", { title, onclick: show }, timeOfDay(at)));
 }
 
 function cell(text) {
