@@ -111,12 +111,13 @@ def test_an_error_comes_first_and_shades_its_time_and_goes_back_when_it_is_over(
 
 def test_the_order_does_not_change_under_a_pointer(desktop: Page, service: Service) -> None:
     button(desktop, "Battery").hover()
-    service.request("PATCH", "/mock/temperature", {"value": 60})
-    expect(row(desktop, "Temperature")).to_contain_text("TEMPERATURE_HIGH")
+    # An error would move the whole list, since its reason is told above.
+    service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+    expect(row(desktop, "GPS accuracy")).to_contain_text("GPS_LOST in ")
     desktop.wait_for_timeout(1500)
-    expect(rows(desktop).last).to_contain_text("Temperature")
+    expect(rows(desktop).nth(2)).to_contain_text("GPS accuracy")
     away(desktop)
-    expect(rows(desktop).first).to_contain_text("Temperature")
+    expect(rows(desktop).first).to_contain_text("GPS accuracy")
 
 
 def test_a_signal_that_is_no_longer_published_is_stale_and_tells_its_age(

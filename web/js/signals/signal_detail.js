@@ -42,6 +42,8 @@ class SignalDetail extends HTMLElement {
   #span = 10;
   #askedAt = -Infinity;
   #asked = 0;
+  /** The moment whose history is shown, in ms; null: now; undefined: none yet. */
+  #shownAt = undefined;
 
   open(name, label) {
     this.name = name;
@@ -76,15 +78,15 @@ class SignalDetail extends HTMLElement {
     );
     const pause = Math.max(LEAST_PAUSE_MS, (this.#span * MINUTE_MS) / POINTS);
     if (view.live.replay) setText(this.summary, "A recording has no history.");
-    const isDue = performance.now() - this.#askedAt > pause;
+    const at = view.moment?.at ?? null;
+    const isOld = at === null && performance.now() - this.#askedAt > pause;
     const isAnswered = view.contact.level !== "lost" && !view.live.replay;
-    if (isDue && isAnswered && (!view.moment || view.moment.at !== this.shownAt)) this.#load();
+    if (isAnswered && (isOld || at !== this.#shownAt)) this.#load(at);
   }
 
   #choose(minutes) {
     this.#span = minutes;
-    this.#askedAt = -Infinity;
-    this.shownAt = null;
+    this.#shownAt = undefined;
     SPANS.forEach(([, own], index) => setAttribute(this.spans[index], "aria-pressed", String(own === minutes)));
     if (this.view) this.show(this.view);
   }
@@ -94,9 +96,9 @@ class SignalDetail extends HTMLElement {
     this.monitor = answer.items.find(({ signal }) => signal === this.name) ?? null;
   }
 
-  async #load() {
+  async #load(at) {
     this.#askedAt = performance.now();
-    this.shownAt = this.view.moment?.at ?? null;
+    this.#shownAt = at;
     const to = this.view.serverNow;
     const from = to - this.#span * MINUTE_MS;
     const asked = ++this.#asked;
