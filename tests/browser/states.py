@@ -194,7 +194,7 @@ def signals_pending(page: Page, service: Service) -> None:
     for value in (44, 49, 53, 58, 61):
         service.request("PATCH", "/mock/temperature", {"value": value})
         page.wait_for_timeout(1500)
-    row = page.locator("ph-signal-list:not([only]) ph-signal-row").filter(has_text="Temperature")
+    row = page.locator("ph-signal-list ph-signal-row").filter(has_text="Temperature")
     row.get_by_role("button").first.click()
     row.get_by_role("button", name="1 min", exact=True).click()
     row.locator(".chart-line[d^=M]").wait_for(state="attached")
