@@ -280,7 +280,7 @@ class Timeline extends HTMLElement {
 
   /** The lane that the keys are on, while they are. */
   #focusedLane() {
-    return document.activeElement === this.lanes.canvas ? this.#lane : null;
+    return this.lanes.canvas.matches(":focus-visible") ? this.#lane : null;
   }
 
   #cursorX() {
