@@ -25,7 +25,8 @@ Source setup.bash of the ROS 2 distribution first. ROS 2 participants in that
 domain need no token.
 
 exit code: 0 ended by a signal; 1 failed, or a file is invalid;
-           2 invalid options or environment, or a file cannot be read;
+           2 the environment is invalid, or a file cannot be read;
+           64 invalid options;
            130 ended by a second Ctrl-C
 """
 

@@ -151,7 +151,7 @@ function makeLine(event) {
   const line = el("li", { "data-kind": event.kind });
   const time = el("time", { datetime: event.at, title: event.at }, timeOfDay(event.at));
   const show = () => line.dispatchEvent(new CustomEvent("ph-show-moment", { bubbles: true, detail: { at: Date.parse(event.at) } }));
-  const kind = el("span", { class: "event-kind" }, event.kind);
+  const kind = el("span", { class: "event-kind" }, event.kind.replace(/[._]/g, " "));
   const name = `Show ${timeOfDay(event.at)} in all panels`;
   line.append(
     el("button", { type: "button", class: "event-time", title: name, onclick: show }, time),
