@@ -83,7 +83,9 @@ def test_the_worst_is_open_and_says_what_it_means_and_what_can_be_done(
 def test_an_error_leads_to_the_moment_when_it_began(desktop: Page, service: Service) -> None:
     load(service, 300)
     desktop.evaluate(
-        """() => document.addEventListener("ph-show-moment", ({ detail }) => (window.at = detail.at))"""
+        """() => document.addEventListener("ph-show-moment", ({ detail }) => {
+            window.at = detail.at;
+        })"""
     )
     alarm(desktop, "OVERLOAD").get_by_role("button", name="Show on the timeline").click()
     since = error_of(service)["since_at"]
@@ -100,8 +102,11 @@ def test_who_selects_a_part_has_the_errors_closed_above_it_until_why_is_asked_fo
     expect(opened).not_to_have_attribute("open", "")
     expect(alarm(desktop, "OVERLOAD")).to_contain_text("Load 300 kg is above 250 kg")
     expect(desktop.locator("ph-part-panel h2")).to_be_in_viewport()
-    desktop.get_by_role("heading", level=1).click()
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    desktop.get_by_role("button", name="+1 more: why").click()
     expect(opened).to_have_attribute("open", "")
+    further = desktop.get_by_role("list", name="Further reasons")
+    expect(further).to_have_text("also held by gate (the gate is shut)")
 
 
 def test_a_critical_error_is_in_the_title_until_somebody_acknowledged_it(

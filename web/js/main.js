@@ -7,6 +7,7 @@ import { Latency } from "/web/js/base/latency.js";
 import { Pacer } from "/web/js/base/pacer.js";
 import { partCounts } from "/web/js/base/part_problems.js";
 import { PathWatch } from "/web/js/base/path_watch.js";
+import { parsePlain } from "/web/js/base/plain_json.js";
 import { emptyState, fold } from "/web/js/base/store.js";
 import "/web/js/base/theme.js";
 import "/web/js/header/token_form.js";
@@ -49,7 +50,7 @@ const elements = [
   ...document.querySelectorAll(
     "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
       "ph-why, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
-      "ph-signal-list, ph-timeline, ph-what-if",
+      "ph-pending-list, ph-signal-list, ph-timeline, ph-what-if",
   ),
 ];
 let state = emptyState();
@@ -193,7 +194,7 @@ function showBrought() {
   if (block === null) return;
   const [{ responseStart }] = performance.getEntriesByType("navigation");
   const at = performance.timeOrigin + responseStart;
-  for (const frame of JSON.parse(block.textContent)) hear(frame, at);
+  for (const frame of parsePlain(block.textContent)) hear(frame, at);
   connection.heardAt(at);
   block.remove();
 }

@@ -17,7 +17,7 @@ export function signalOf({ error, part, message }, signals) {
 export function measured({ value, threshold, message }, signal) {
   if (typeof value !== "number" || typeof threshold !== "number") return "";
   if (signal && message.includes(" is ")) return "";
-  const show = describe(signal?.signal ?? "", signal?.unit).show;
+  const show = describe(signal?.signal ?? "", signal ?? {}).show;
   const [said, limit] = [value, threshold].map((number) => show(number).filter(Boolean).join(" "));
   return `${said}, limit ${limit}`;
 }

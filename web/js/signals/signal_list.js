@@ -31,8 +31,7 @@ class SignalList extends HTMLElement {
       "aria-label": "Filter signals",
       oninput: () => this.#sift(),
     });
-    const whatIf = el("button", { class: "link", onclick: openWhatIf }, "What if …");
-    this.head = el("div", { class: "signals-head" }, el("h2", {}, "Signals"), this.count, whatIf, this.filter);
+    this.head = el("div", { class: "signals-head" }, el("h2", {}, "Signals"), this.count, this.filter);
     this.empty = el("p", { class: "quiet" }, "Not known yet.");
     this.list = el("div", { role: "list", "aria-label": this.only ? "Pending" : "Signals" });
     setAttribute(this.head, "hidden", Boolean(this.only));
@@ -125,6 +124,7 @@ class SignalList extends HTMLElement {
       if (fits) shown++;
     }
     setAttribute(this.filter, "hidden", rows.length < FILTER_FROM);
+    setAttribute(this, "data-many", rows.length >= FILTER_FROM);
     setText(this.count, countWords(rows, shown));
     const isFirst = this.list.querySelector("[tabindex='0']")?.checkVisibility();
     if (!isFirst) this.#setTabStop(rows.find((row) => !row.hidden));
@@ -156,10 +156,6 @@ class SignalList extends HTMLElement {
     const { toggleDetail } = await import("/web/js/signals/signal_detail.js");
     toggleDetail(row, this.view);
   }
-}
-
-function openWhatIf() {
-  document.dispatchEvent(new CustomEvent("ph-what-if", { detail: {} }));
 }
 
 customElements.define("ph-signal-list", SignalList);

@@ -303,6 +303,7 @@ class Timeline extends HTMLElement {
     const box = this.lanes.canvas.getBoundingClientRect();
     const found = { ...this.lanes.at(x, y), at, lane };
     this.tip.show(found, this.#dark, this.#now(), box.left + x, box.top + y);
+    this.#speak(this.#now());
   }
 
   #moveLane(way) {
@@ -396,7 +397,7 @@ class Timeline extends HTMLElement {
     const { canvas, scale } = this.lanes;
     if (!scale) return;
     const at = this.#cursor ?? this.#pinned ?? now;
-    const seconds = [scale.from, scale.to, at].map((time) => Math.round(time / 1000));
+    const seconds = [scale.from, scale.to, at].map((time) => Math.round(time) / 1000);
     setAttribute(canvas, "aria-valuemin", seconds[0]);
     setAttribute(canvas, "aria-valuemax", seconds[1]);
     setAttribute(canvas, "aria-valuenow", Math.min(seconds[1], Math.max(seconds[0], seconds[2])));

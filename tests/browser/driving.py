@@ -1,0 +1,61 @@
+"""What a person does to drive the robot on the page: the strip, the sheet, the map."""
+
+from typing import TYPE_CHECKING, Any
+
+from playwright.sync_api import expect
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+    from tests.browser.station import Service
+
+
+def sentence(page: "Page") -> "Locator":
+    return page.get_by_role("heading", level=1)
+
+
+def strip(page: "Page") -> "Locator":
+    return page.locator("ph-task-strip")
+
+
+def sheet(page: "Page") -> "Locator":
+    return page.get_by_role("dialog", name="New task")
+
+
+def words(page: "Page") -> "Locator":
+    """What the map tells those who do not see it."""
+    return page.locator("#map-words")
+
+
+def canvas(page: "Page") -> "Locator":
+    return page.locator("ph-map canvas")
+
+
+def button(page: "Page", name: str) -> "Locator":
+    return page.get_by_role("button", name=name)
+
+
+def open_sheet(page: "Page") -> None:
+    button(page, "New task").click()
+    expect(page.get_by_label("Choose a CSV")).to_be_attached()
+    expect(page.get_by_label("Controller")).to_contain_text("Pure Pursuit")
+
+
+def choose(page: "Page", content: bytes, name: str = "field.csv") -> None:
+    if not sheet(page).is_visible():
+        open_sheet(page)
+    file: Any = {"name": name, "mimeType": "text/csv", "buffer": content}
+    page.get_by_label("Choose a CSV").set_input_files(file)
+
+
+def start(page: "Page", service: "Service", length_m: int) -> None:
+    choose(page, service.track_ahead(length_m))
+    page.get_by_role("button", name="Start", exact=True).click()
+    expect(sentence(page)).to_contain_text("RUNNING: task ")
+
+
+def hold(button: "Locator", page: "Page") -> None:
+    button.hover()
+    page.mouse.down()
+    page.wait_for_timeout(1700)
+    page.mouse.up()
