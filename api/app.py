@@ -23,6 +23,7 @@ from api.http.gate.rate import RateGate
 from api.http.gate.target import TargetGate
 from api.http.gate.token import TokenGate
 from api.http.limits import USUAL_LIMITS, ServiceLimits
+from api.http.page.assembled_page import assembled_page
 from api.robot_app import create_robot_app
 from api.rosbridge import route as rosbridge
 from api.rosbridge.clients import make_rosbridge_clients
@@ -108,10 +109,10 @@ def _guard(
 
 
 async def prepare(app: FastAPI) -> None:
-    """Build what else would be built at the first requests: the documents of the interface.
+    """Build what else would be built at the first requests: the page, and the documents.
 
-    The larger one is made in a forked process: as objects it takes 4 MB for as long as the service
-    runs, and as text a tenth of that.
+    The larger document is made in a forked process: as objects it takes 4 MB for as long as the
+    service runs, and as text a tenth of that.
     """
     try:
         encoded = await forked_call(partial(encode_description, app))
@@ -119,6 +120,7 @@ async def prepare(app: FastAPI) -> None:
         encoded = encode_description(app)
     keep_description(app, encoded)
     stream_document()
+    await asyncio.to_thread(assembled_page)
 
 
 @asynccontextmanager

@@ -16,6 +16,5 @@ def no_such(what: str, name: str, known: Sequence[str]) -> ServiceProblemError:
     from domain.errors import UnknownNameError
 
     error = UnknownNameError(what, name, known)
-    return ServiceProblemError(
-        {"detail": error.message, "hint": error.hint or f"there is no {what}"}
-    )
+    hint = error.hint or f"there is no {what} at all"
+    return ServiceProblemError({"detail": error.message, "hint": hint})

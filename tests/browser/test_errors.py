@@ -8,9 +8,11 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.station import Complaints, Service, free_port
+from tests.browser.test_operator import serving
+from tests.support.shared import PROJECT
 
 pytestmark = pytest.mark.browser
 
@@ -83,7 +85,9 @@ def test_the_worst_is_open_and_says_what_it_means_and_what_can_be_done(
 def test_an_error_leads_to_the_moment_when_it_began(desktop: Page, service: Service) -> None:
     load(service, 300)
     desktop.evaluate(
-        """() => document.addEventListener("ph-show-moment", ({ detail }) => (window.at = detail.at))"""
+        """() => document.addEventListener("ph-show-moment", ({ detail }) => {
+            window.at = detail.at;
+        })"""
     )
     alarm(desktop, "OVERLOAD").get_by_role("button", name="Show on the timeline").click()
     since = error_of(service)["since_at"]
@@ -100,8 +104,11 @@ def test_who_selects_a_part_has_the_errors_closed_above_it_until_why_is_asked_fo
     expect(opened).not_to_have_attribute("open", "")
     expect(alarm(desktop, "OVERLOAD")).to_contain_text("Load 300 kg is above 250 kg")
     expect(desktop.locator("ph-part-panel h2")).to_be_in_viewport()
-    desktop.get_by_role("heading", level=1).click()
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    desktop.get_by_role("button", name="+1 more: why").click()
     expect(opened).to_have_attribute("open", "")
+    further = desktop.get_by_role("list", name="Further reasons")
+    expect(further).to_have_text("also held by gate (the gate is shut)")
 
 
 def test_a_critical_error_is_in_the_title_until_somebody_acknowledged_it(
@@ -185,7 +192,7 @@ def test_an_error_that_comes_and_goes_says_what_would_calm_it(
     )
 
 
-def test_what_follows_from_an_error_is_folded_below_it(desktop: Page) -> None:
+def test_roots_come_first_with_what_follows_from_each(desktop: Page) -> None:
     desktop.evaluate(
         """async () => {
           const { errorGroups } = await import("/web/js/base/error_groups.js");
@@ -269,3 +276,40 @@ def told(*, part: str | None, error: str) -> dict[str, Any]:
 def error_of(service: Service) -> Any:  # noqa: ANN401
     listed = service.request("GET", "/errors")["items"]
     return next(item for item in listed if item["error"] == "OVERLOAD")
+
+
+# --- consequences --------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def rover(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    mobile = PROJECT / "examples" / "mobile_robot"
+    arguments = (str(mobile / "model.yaml"), "--robot", str(mobile / "robot.yaml"))
+    yield from serving(tmp_path_factory.mktemp("rover"), arguments)
+
+
+def test_what_follows_from_an_error_is_folded_below_it_and_is_acknowledged_there(
+    browser: Browser, rover: Service
+) -> None:
+    page = browser.new_page(viewport={"width": 1440, "height": 900})
+    page.goto(rover.url)
+    fault = {"active": True, "message": "overcurrent"}
+    rover.request("POST", "/nodes/left_drive/errors/FAULT", fault)
+    root = page.locator(".alarms > li > ph-alarm").filter(has_text="overcurrent")
+    expect(root).to_contain_text("Critical: the task cannot go on (base.LAME)", timeout=10_000)
+    expect(root).to_have_attribute("data-severity", "critical")
+    expect(page).to_have_title("(1) ERROR · Pilothouse")
+    below = root.locator("ph-alarm")
+    expect(below).to_have_count(0)
+
+    root.locator("summary").filter(has_text="1 follows from this").click()
+    below.locator("summary").first.click()
+    expect(below).to_contain_text("push the robot only with both drives without power")
+    below.get_by_role("button", name="Acknowledge (hold)").click(delay=1200)
+    expect(below.locator(".tags")).to_have_text("acknowledged")
+    expect(page).to_have_title("ERROR · Pilothouse")
+
+    root.get_by_role("button", name="Show left_drive").click()
+    expect(page.locator("ph-part-panel h2")).to_have_text("left_drive")
+    expect(page.get_by_role("list", name="Errors of this part")).to_contain_text("overcurrent")
+    page.close()

@@ -1,5 +1,6 @@
 """The list of reactions, as an operator reads it and uses it."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -54,11 +55,11 @@ def service(running_service: Service) -> Service:
 
 
 def section(page: Page) -> Locator:
-    return page.locator("section.place-reactions")
+    return page.locator("ph-why")
 
 
 def line(page: Page, name: str) -> Locator:
-    return section(page).locator("li").filter(has_text=name)
+    return section(page).locator("ph-reaction").filter(has_text=name)
 
 
 def warm_up(service: Service, value: float) -> None:
@@ -74,25 +75,44 @@ def test_one_that_acts_says_what_it_waits_for(desktop: Page, service: Service) -
     service.request("POST", "/systems/carrier/mode", {"mode": "__DEFAULT__"})
     warm_up(service, 42.0)
 
-    expect(line(desktop, "carrier.LIMP")).to_contain_text("acting")
-    expect(line(desktop, "carrier.LIMP")).to_contain_text("waits for an end of: temperature > 40")
+    expect(line(desktop, "carrier.LIMP")).to_contain_text("acts")
+    expect(line(desktop, "carrier.LIMP")).to_contain_text("Waits for an end of: temperature > 40")
     expect(section(desktop).locator("h2")).to_contain_text("1 acting")
+
+
+def test_one_that_acts_says_why_when_it_is_opened(desktop: Page, service: Service) -> None:
+    service.request("POST", "/systems/carrier/mode", {"mode": "__DEFAULT__"})
+    warm_up(service, 42.0)
+    expect(line(desktop, "carrier.LIMP").locator(".reason-tree")).to_have_count(0)
+    line(desktop, "carrier.LIMP").locator("summary").click()
+    expect(line(desktop, "carrier.LIMP").locator(".reason-tree")).to_contain_text("42")
+
+
+def test_the_reactions_of_a_part_are_with_the_part(desktop: Page, service: Service) -> None:
+    of_part = desktop.locator("ph-part-panel ph-reaction")
+    expect(of_part).to_have_count(2)
+    desktop.get_by_role("treeitem").filter(has_text="drive").last.click()
+    expect(of_part).to_have_count(0)
 
 
 def test_a_hold_of_a_reaction_has_no_release_and_is_acknowledged(
     desktop: Page, service: Service
 ) -> None:
     warm_up(service, 48.0)
-    expect(desktop.locator("ph-hold-list")).to_contain_text("reaction:HALT")
+    desktop.get_by_role("button", name=re.compile(r"^\d holds?$")).click()
+    holds = desktop.get_by_role("listitem").filter(has_text="reaction:HALT")
+    expect(holds).to_contain_text("carrier: temperature > 45")
     expect(desktop.get_by_role("button", name="Release reaction:HALT")).to_have_count(0)
     warm_up(service, 30.0)
+    desktop.keyboard.press("Escape")
     button = line(desktop, "carrier.HALT").get_by_role("button", name="Acknowledge (hold)")
     button.click(delay=1200)
-    expect(desktop.locator("ph-hold-list")).not_to_contain_text("reaction:HALT")
+    expect(desktop.locator("[popover] ph-hold-list")).not_to_contain_text("reaction:HALT")
 
 
 def test_a_reaction_is_armed_by_a_long_press(desktop: Page, service: Service) -> None:
-    section(desktop).locator("summary").click()
+    section(desktop).locator("summary").filter(has_text="2 waiting").click()
+    line(desktop, "carrier.LIMP").locator("summary").click()
     line(desktop, "carrier.LIMP").locator("select").select_option("disarmed")
     line(desktop, "carrier.LIMP").get_by_role("button", name="Set (hold)").click(delay=1200)
     expect(section(desktop)).to_contain_text("1 waiting")

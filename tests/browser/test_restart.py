@@ -63,20 +63,25 @@ def test_a_task_over_a_restart_waits_for_a_long_press_and_goes_on(
     page = opened(browser, kept, 1280, 800)
     expect(sentence(page)).to_contain_text("RUNNING: task t1")
     restart(page, kept)
-    expect(sentence(page)).to_contain_text("PAUSED: task t1")
-    notice = page.locator("ph-state-bar .notice")
+    expect(sentence(page)).to_contain_text("HELD: task t1")
+    notice = page.locator("ph-notices .notice")
     expect(notice).to_contain_text(
-        re.compile(r"^Service restarted at [\d:]+: nothing moves before somebody asks\.")
+        re.compile(
+            r"^Started again at [\d:]+; it remembers task t1.*; the task is held by restart\."
+        )
     )
     hold = page.get_by_role("list", name="Holds").get_by_role("listitem")
-    expect(hold).to_contain_text("restart: the service was restarted")
-    expect(hold).to_contain_text(re.compile(r"for \d+ s, by Pilothouse"))
+    expect(hold).to_contain_text("the service was restarted")
+    expect(hold).to_have_attribute("title", re.compile(r"^restart, .*for \d+ s, by Pilothouse"))
     expect(page.get_by_role("button", name="Pause")).to_be_hidden()
 
     press(page.get_by_role("button", name=name), page)
 
     expect(sentence(page)).to_contain_text("RUNNING: task t1")
     expect(page.get_by_role("button", name="Pause")).to_be_visible()
+    expect(notice).not_to_contain_text("held by restart")
+    notice.get_by_role("button", name="Dismiss").click()
+    expect(notice).to_be_hidden()
     page.close()
 
 
@@ -87,7 +92,7 @@ def test_the_start_task_waits_after_a_restart_and_says_who_asked_for_it(
     expect(sentence(page)).to_contain_text("RUNNING: task t1")
     kept.request("DELETE", "/tasks/current")
     restart(page, kept)
-    expect(sentence(page)).to_contain_text("PAUSED: task")
+    expect(sentence(page)).to_contain_text("HELD: task")
     hold = page.get_by_role("list", name="Holds").get_by_role("listitem")
     expect(hold).to_contain_text(
         "start_task: the service was restarted: release this hold to drive the start task"

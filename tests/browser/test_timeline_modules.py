@@ -347,7 +347,8 @@ def test_a_small_robot_has_a_lane_for_each_part_and_a_large_one_for_those_that_a
         const { chosenParts } = await import("/web/js/timeline/chosen_parts.js");
         const robot = (count) => Object.fromEntries(Array.from({ length: count }, (_, n) =>
           [`n${n}`, { name: `n${n}`, kind: n === 2 ? "system" : "node" }]));
-        const chosen = [3, 90].map((count) => chosenParts(robot(count), "n1", ["n0", "n2", "gone"]));
+        const kept = ["n0", "n2", "gone"];
+        const chosen = [3, 90].map((count) => chosenParts(robot(count), "n1", kept));
         return chosen.map(({ names }) => names);
     """
     assert run(page, script) == [["n2", "n0", "n1"], ["n2", "n1", "n0"]]

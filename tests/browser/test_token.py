@@ -79,7 +79,7 @@ def test_the_token_goes_with_what_the_page_asks_for(page: Page, guarded: Service
     give(page, TOKEN)
     expect(sentence(page)).to_have_text("IDLE: no task", timeout=SLOW_MS)
 
-    page.get_by_role("button", name="PERFORMANCE").click()
+    page.get_by_role("radio", name="PERFORMANCE").click()
 
     expect(page.locator("ph-change")).to_contain_text("succeeded after", timeout=SLOW_MS)
 
@@ -87,8 +87,9 @@ def test_the_token_goes_with_what_the_page_asks_for(page: Page, guarded: Service
 def test_a_write_is_told_once_and_by_whom_where_details_are_wanted(page: Page) -> None:
     give(page, TOKEN)
     expect(sentence(page)).to_have_text("IDLE: no task", timeout=SLOW_MS)
-    page.get_by_role("button", name="MODERATE").click()
+    page.get_by_role("radio", name="MODERATE").click()
     expect(page.locator("ph-change")).to_contain_text("succeeded after", timeout=SLOW_MS)
+    page.get_by_role("tab", name="Log", exact=True).click()
     written = page.locator('ph-event-list [data-kind="audit.write"]')
 
     expect(written).to_have_count(0)

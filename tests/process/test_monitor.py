@@ -10,8 +10,13 @@ import socket
 import struct
 import subprocess
 import termios
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
 
 import httpx
+import pytest
 
 from tests.support.process import COMMAND, ServiceProcess, run, service
 
@@ -80,39 +85,84 @@ def test_where_no_service_is_that_is_told_in_one_line() -> None:
     )
 
 
-def test_on_a_terminal_it_follows_an_error_and_leaves_the_terminal_as_it_was() -> None:
-    controller, terminal = pty.openpty()
-    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-    before = termios.tcgetattr(terminal)
-    with service() as running:
-        environment = {**os.environ, "TERM": "xterm-256color"}
-        watching = subprocess.Popen(
-            [*COMMAND, "monitor", running.url],
-            stdin=terminal,
-            stdout=terminal,
-            stderr=terminal,
-            env=environment,
-        )
-        try:
-            begin = _read_until(controller, b"manipulator")
-            httpx.post(f"{running.url}/signals/battery_level", json={"value": 0.42})
-            error = _read_until(controller, b"battery 42 % is below 50 %")
-            watching.send_signal(signal.SIGINT)
-            end = _read_until(controller, b"\x1b[?25h")
-            code = watching.wait(10)
-        finally:
-            watching.kill()
-            watching.wait()
-    after = termios.tcgetattr(terminal)
-    os.close(controller)
-    os.close(terminal)
+@pytest.mark.parametrize("ending", ["Ctrl-C", "SIGTERM", "q"])
+def test_on_a_terminal_it_follows_an_error_and_leaves_the_terminal_as_it_was(ending: str) -> None:
+    with service() as running, _on_a_terminal("monitor", "--url", running.url) as terminal:
+        begin = _read_until(terminal.controller, b"manipulator")
+        httpx.post(f"{running.url}/signals/battery_level", json={"value": 0.42})
+        error = _read_until(terminal.controller, b"battery 42 % is below 50 %")
+        match ending:
+            case "Ctrl-C":
+                os.write(terminal.controller, b"\x03")
+            case "SIGTERM":
+                terminal.process.send_signal(signal.SIGTERM)
+            case _:
+                os.write(terminal.controller, b"x\x1bOQ")
+                assert terminal.process.poll() is None
+                os.write(terminal.controller, b"q")
+        end = _read_until(terminal.controller, b"\x1b[?25h")
+        code = terminal.process.wait(10)
+        after = terminal.modes()
 
     assert b"\x1b[?1049h" in begin
     # Only what changed is written.
     assert b"manipulator" not in error
     assert b"\x1b[?1049l" in end
     assert code == 0
-    assert after == before
+    assert after == terminal.before
+
+
+def test_without_a_keyboard_it_is_drawn_all_the_same() -> None:
+    with (
+        service() as running,
+        _on_a_terminal("monitor", running.url, has_keyboard=False) as terminal,
+    ):
+        _read_until(terminal.controller, b"manipulator")
+        terminal.process.send_signal(signal.SIGINT)
+        assert terminal.process.wait(10) == 0
+
+
+@dataclass
+class _Terminal:
+    """A terminal, with a command in its foreground."""
+
+    process: "subprocess.Popen[bytes]"
+    controller: int
+    """Its other end: what is written here is typed."""
+    number: int
+    before: list[Any]
+    """Its modes before the command began."""
+
+    def modes(self) -> list[Any]:
+        return termios.tcgetattr(self.number)
+
+
+@contextmanager
+def _on_a_terminal(*command: str, has_keyboard: bool = True) -> Iterator[_Terminal]:
+    controller, terminal = pty.openpty()
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    before = termios.tcgetattr(terminal)
+    process = subprocess.Popen(
+        [*COMMAND, *command],
+        stdin=terminal if has_keyboard else subprocess.DEVNULL,
+        stdout=terminal,
+        stderr=terminal,
+        env={**os.environ, "TERM": "xterm-256color"},
+        start_new_session=True,
+        preexec_fn=_own_terminal,
+    )
+    try:
+        yield _Terminal(process, controller, terminal, before)
+    finally:
+        process.kill()
+        process.wait()
+        os.close(controller)
+        os.close(terminal)
+
+
+def _own_terminal() -> None:
+    """Make the standard output the terminal of a new session, as a login does."""
+    fcntl.ioctl(1, termios.TIOCSCTTY, 0)
 
 
 def _read_until(controller: int, wanted: bytes) -> bytes:

@@ -7,6 +7,7 @@ import { Latency } from "/web/js/base/latency.js";
 import { Pacer } from "/web/js/base/pacer.js";
 import { partCounts } from "/web/js/base/part_problems.js";
 import { PathWatch } from "/web/js/base/path_watch.js";
+import { parsePlain } from "/web/js/base/plain_json.js";
 import { emptyState, fold } from "/web/js/base/store.js";
 import "/web/js/base/theme.js";
 import "/web/js/header/token_form.js";
@@ -49,7 +50,7 @@ const elements = [
   ...document.querySelectorAll(
     "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
       "ph-why, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
-      "ph-signal-list, ph-timeline, ph-what-if",
+      "ph-pending-list, ph-signal-list, ph-timeline, ph-what-if",
   ),
 ];
 let state = emptyState();
@@ -91,7 +92,7 @@ function currentView() {
     roundTripMs: latency.roundTripMs,
     skipped: connection.skipped,
   };
-  selected ??= Object.values(state.parts).find((part) => part.kind === "system")?.name ?? null;
+  selected ??= outermost(state.parts);
   // A recording goes at a speed of its own.
   const serverNow = state.replay && state.at ? Date.parse(state.at) : clock.now();
   // Without contact nobody knows whether what began before still lasts.
@@ -119,6 +120,13 @@ function currentView() {
 async function loadPanels() {
   await import("/web/js/panels.js");
   pacer.ask(true);
+}
+
+/** Name of the first system that no other contains; null: none is known yet. */
+function outermost(parts) {
+  const all = Object.values(parts);
+  const owned = new Set(all.flatMap((part) => part.parts ?? []));
+  return all.find(({ kind, name }) => kind === "system" && !owned.has(name))?.name ?? null;
 }
 
 /** Request what no frame carries; after a failure it is requested again on reconnection. */
@@ -193,7 +201,7 @@ function showBrought() {
   if (block === null) return;
   const [{ responseStart }] = performance.getEntriesByType("navigation");
   const at = performance.timeOrigin + responseStart;
-  for (const frame of JSON.parse(block.textContent)) hear(frame, at);
+  for (const frame of parsePlain(block.textContent)) hear(frame, at);
   connection.heardAt(at);
   block.remove();
 }

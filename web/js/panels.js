@@ -4,5 +4,6 @@ import "/web/js/map/map.js";
 import "/web/js/task/task_strip.js";
 import "/web/js/inspector/why.js";
 import "/web/js/inspector/part_panel.js";
+import "/web/js/signals/pending_list.js";
 import "/web/js/signals/signal_list.js";
 import "/web/js/timeline/timeline.js";

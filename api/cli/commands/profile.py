@@ -38,7 +38,7 @@ examples:
   pilothouse profile --analyse profile/runs.csv --format json
 
 exit code: 0 all runs succeeded; 1 a run failed, or the service did;
-           2 invalid options, or a file cannot be read or written;
+           2 a file cannot be read or written, or the plot cannot be drawn;
            130 ended by Ctrl-C
 """
 

@@ -25,7 +25,8 @@ Source setup.bash of the ROS 2 distribution first. ROS 2 participants in that
 domain need no token.
 
 exit code: 0 ended by a signal; 1 failed, or a file is invalid;
-           2 invalid options or environment, or a file cannot be read;
+           2 the environment is invalid, or a file cannot be read;
+           64 invalid options;
            130 ended by a second Ctrl-C
 """
 
@@ -75,6 +76,12 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "token, write; can be repeated",
     )
     parser.add_argument(
+        "--format",
+        default="text",
+        choices=("text", "json"),
+        help="of the greeting; json: {url, version, model, data, token_needed, simulated}",
+    )
+    parser.add_argument(
         "--log-level", default="info", choices=("debug", "info", "warning", "error")
     )
 
@@ -95,6 +102,7 @@ def _run(options: argparse.Namespace) -> int:
             allowed_hosts=tuple(options.allowed_host),
             allowed_origins=tuple(options.allowed_origin),
             log_level=options.log_level,
+            form=options.format,
             data=options.data,
         )
     )

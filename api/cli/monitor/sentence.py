@@ -138,7 +138,9 @@ def _calm_sentence(robot: Robot) -> Sentence:
     if alarm := alarm_of(state):
         return Sentence(alarm, text, more, "error")
     is_unable = not _holds(robot).keys().isdisjoint(_UNABLE)
-    return Sentence(word, text, more, "attention" if found or is_unable else _LEVELS.get(word, "calm"))
+    return Sentence(
+        word, text, more, "attention" if found or is_unable else _LEVELS.get(word, "calm")
+    )
 
 
 def alarm_of(state: Json) -> str | None:

@@ -5,17 +5,21 @@ It is put together once, from the files of the package `web`, so there is no ste
 
 import hashlib
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import PurePosixPath
+from typing import TypeAlias
 
 from api.http.page.bundles import make_bundles, pack
+from api.http.page.minifier import minified
 from api.http.page.module_graph import Modules
 from api.http.page.module_text import PageError, squeeze
 from api.http.page.page_file import MEDIA_TYPES, PageFile
+
+Shorten: TypeAlias = Callable[[Mapping[str, str]], Mapping[str, str]]
 
 _INDEX = "index.html"
 _STYLE = re.compile(r'<link rel="stylesheet" href="/web/(style/\w+\.css)">\n')
@@ -47,19 +51,20 @@ def sources() -> Mapping[str, PageFile]:
 
 @cache
 def assembled_page() -> AssembledPage:
-    """Return the page of this installation.
+    """Return the page of this installation; the first time, this takes half a second.
 
     Raises:
         PageError: A file cannot be bundled.
     """
-    return assemble({path: file.content.decode() for path, file in sources().items()})
+    return assemble({path: file.content.decode() for path, file in sources().items()}, minified)
 
 
-def assemble(texts: Mapping[str, str]) -> AssembledPage:
+def assemble(texts: Mapping[str, str], shorten: Shorten = lambda texts: texts) -> AssembledPage:
     """Put a page together.
 
     Args:
         texts: Its files, by path below `web/`; among them `index.html`.
+        shorten: Says scripts and style sheets in fewer characters.
 
     Raises:
         PageError: A file cannot be bundled.
@@ -71,7 +76,7 @@ def assemble(texts: Mapping[str, str]) -> AssembledPage:
     styles = _bundled_styles(_STYLE.findall(index), texts)
     first_scripts, scripts = make_bundles(Modules.reached_from(entries[0], texts.get))
     icons = {name: texts[name] for name in _ICON.findall(index)}
-    made = {**styles, **scripts, **icons}
+    made = shorten({**styles, **scripts, **icons})
     first = (*styles, *first_scripts)
     version = _digest([index, *(f"{name}\n{text}" for name, text in made.items())])
     head, foot = _frame(index, version, list(styles), first_scripts)

@@ -30,21 +30,20 @@ for the page of a large robot thus never takes more than a tenth of a core."""
 class FrontPage:
     """Answers `/`."""
 
-    def __init__(self, page: AssembledPage, first_frames: FirstFrames) -> None:
+    def __init__(self, page: AssembledPage) -> None:
         self._page = page
-        self._first_frames = first_frames
         self._bare = PageFile.of((page.head + page.foot).encode(), _HTML, compressed=True)
         self._compressing = asyncio.Lock()
         self._kept = b""
         self._kept_until = 0.0
 
-    async def answer(self, request: Request) -> Response:
+    async def answer(self, request: Request, first_frames: FirstFrames) -> Response:
         """Answer with the page; only without a first frame may a browser keep it."""
         is_compressed = reads_gzip(request)
         async with self._compressing:
             if is_compressed and time.monotonic() < self._kept_until:
                 return self._answer(self._kept, "gzip")
-            frames = await self._first_frames()
+            frames = await first_frames()
             if frames is None:
                 return answer_with(self._bare, request)
             text = f"{self._page.head}{_block(frames)}{self._page.foot}"

@@ -3,6 +3,7 @@
 Only files found at the start can be requested, so that no path can leave the package.
 """
 
+from functools import cache
 from http import HTTPStatus
 
 from fastapi import APIRouter, Request, Response
@@ -20,19 +21,20 @@ def page_routes(first_frames: FirstFrames) -> APIRouter:
     Args:
         first_frames: What the page is to show before it is connected.
     """
-    page = assembled_page()
-    front = FrontPage(page, first_frames)
     router = APIRouter(include_in_schema=False)
+    # A robot in a simulation has these routes as well, and nobody asks for its page.
+    front_page = cache(lambda: FrontPage(assembled_page()))
 
     @router.get("/")
     @policy(Permission.READ_PUBLIC)
     async def get_index(request: Request) -> Response:
-        return await front.answer(request)
+        return await front_page().answer(request, first_frames)
 
     # A page of another version is to notice, and not to run with what it does not know.
     @router.get("/web/v/{version}/{name}")
     @policy(Permission.READ_PUBLIC)
     async def get_bundle(version: str, name: str, request: Request) -> Response:
+        page = assembled_page()
         file = page.files.get(name) if version == page.version else None
         return answer_with(_there(file), request, KEEP)
 

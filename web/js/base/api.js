@@ -1,5 +1,6 @@
 /** Requests to the server; every failure becomes a ProblemError with a text to show. */
 
+import { parsePlain } from "/web/js/base/plain_json.js";
 import { token } from "/web/js/base/token.js";
 
 /** A rejected or failed request, as a problem document of RFC 9457. */
@@ -82,7 +83,7 @@ export function partPath(part) {
 
 function parse(text) {
   try {
-    return JSON.parse(text);
+    return parsePlain(text);
   } catch {
     return null;
   }

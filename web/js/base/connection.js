@@ -1,6 +1,7 @@
 /** The stream: a WebSocket that reconnects by itself and tracks the age of its last frame. */
 
 import { localNow } from "/web/js/base/clock.js";
+import { parsePlain } from "/web/js/base/plain_json.js";
 import { token } from "/web/js/base/token.js";
 
 const LATE_MS = 1000;
@@ -53,7 +54,7 @@ export class Connection extends EventTarget {
     socket.onopen = () => {
       if (token() !== null) socket.send(JSON.stringify({ type: "auth", token: token() }));
     };
-    socket.onmessage = ({ data }) => this.#take(JSON.parse(data));
+    socket.onmessage = ({ data }) => this.#take(parsePlain(data));
     socket.onclose = ({ code }) => {
       if (code === UNAUTHORIZED) this.#refused();
       else this.#closed();

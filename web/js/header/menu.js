@@ -9,7 +9,7 @@ class Menu extends HTMLElement {
     this.sheet = el(
       "div",
       { popover: "auto", class: "sheet", id: "menu" },
-      this.#whatIf("narrow-only"),
+      this.#whatIf("menu-what-if"),
       el("h2", { id: "scheme-title" }, "Scheme"),
       schemeSwitch(),
       el("h2", { id: "keys-title" }, "Keys"),

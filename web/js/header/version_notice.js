@@ -16,7 +16,7 @@ class VersionNotice extends HTMLElement {
     this.hidden = version === own;
     if (this.hidden || this.hasChildNodes()) return;
     const reload = el("button", { type: "button", class: "small", onclick: () => location.reload() }, "Reload");
-    this.append(el("p", {}, "This page is of another version than the service."), reload);
+    this.append(el("p", { class: "grow" }, "This page is of another version than the service."), reload);
   }
 }
 

@@ -51,7 +51,7 @@ class ModeSwitcher extends HTMLElement {
   #made(mode) {
     const mark = el("span", { class: "mark" });
     const name = el("span", { class: "mode-name" }, modeName(mode));
-    const button = el("button", { type: "button", role: "radio", title: mode }, name, mark);
+    const button = el("button", { type: "button", role: "radio", title: modeName(mode) }, name, mark);
     const blocker = el("span", { class: "blocker", id: `blocker-${mode}` });
     const [title, content] = [el("span"), el("div")];
     const of = el("span", {}, ` ${modeName(mode)}`);

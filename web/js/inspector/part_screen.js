@@ -25,7 +25,7 @@ export class PartScreen {
       document.body.toggleAttribute("data-part-open", true);
     }
     tab("parts");
-    scrollTo(0, 0);
+    document.querySelector("main").scrollTop = 0;
     return true;
   }
 

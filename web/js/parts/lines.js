@@ -86,9 +86,9 @@ export function filtered({ order, below }, words) {
   const leading = new Set();
   for (const name of order) {
     const deeper = below.get(name);
-    if (deeper.size === 0) continue;
+    if (deeper.length === 0) continue;
     if (found.has(name)) for (const each of deeper) kept.add(each);
-    if (![...deeper].some((each) => found.has(each))) continue;
+    if (!deeper.some((each) => found.has(each))) continue;
     leading.add(name);
     kept.add(name);
   }

@@ -5,6 +5,7 @@
  */
 
 import { isOn, isSilenced } from "/web/js/base/error_groups.js";
+import { isSame } from "/web/js/base/same.js";
 import { ATTENTION, lookOf, RANKS } from "/web/js/parts/verdict.js";
 
 /** Return how the parts hang together; the previous answer as long as nothing of that changed.
@@ -29,12 +30,12 @@ export function structureOf(parts, before = null) {
     if (below.has(name)) return below.get(name);
     order.add(name);
     const found = new Set();
-    below.set(name, found);
     for (const child of children.get(name)) {
       found.add(child);
       for (const deeper of visit(child)) found.add(deeper);
     }
-    return found;
+    below.set(name, [...found]);
+    return below.get(name);
   };
   roots.forEach(visit);
   const nodes = [...order].filter((name) => children.get(name).length === 0);
@@ -48,13 +49,9 @@ function isSameStructure(parts, { parts: known, names, children }) {
     count += 1;
     const [part, was] = [parts[name], known[name]];
     if (part === was) continue;
-    if (!was || !isSameList(part.parts ?? [], was.parts ?? [])) return false;
+    if (!was || !isSame(part.parts ?? [], was.parts ?? [])) return false;
   }
   return count === names.length && children.size === count;
-}
-
-function isSameList(one, other) {
-  return one.length === other.length && one.every((item, index) => item === other[index]);
 }
 
 const NONE = [];
@@ -116,22 +113,37 @@ export class Looks {
   }
 
   #rollUp({ order, below }) {
-    const wanting = order.filter((name) => this.#rank(name) >= ATTENTION);
-    const isWanting = new Set(wanting);
-    const begins = (this.begins = new Set(
-      wanting.filter((name) => ![...below.get(name)].some((deeper) => isWanting.has(deeper))),
-    ));
+    const isWanting = (name) => this.#rank(name) >= ATTENTION;
+    const wanting = order.filter(isWanting);
+    this.begins = new Set(wanting.filter((name) => !below.get(name).some(isWanting)));
+    const known = this.#below;
     this.#below = new Map();
     for (const [name, deeper] of below) {
-      const found = deeper.size === 0 ? NONE : [...begins].filter((one) => deeper.has(one));
-      if (found.length === 0) continue;
-      const worst = found.reduce((a, b) => (this.#rank(b) > this.#rank(a) ? b : a));
-      this.#below.set(name, { worst: this.look(worst), count: found.length });
+      const [worst, count] = this.#worstOf(deeper);
+      if (count === 0) continue;
+      const was = known.get(name);
+      // The same object, so that its row is left alone.
+      const isKept = was?.worst === worst && was.count === count;
+      this.#below.set(name, isKept ? was : { worst, count });
     }
-    const urgency = (name) => {
-      const rank = this.#rank(name);
-      return (rank >= RANKS.faulty ? 20 : 0) + (begins.has(name) ? 10 : 0) + rank;
-    };
-    this.attention = wanting.sort((a, b) => urgency(b) - urgency(a));
+    const groups = [];
+    for (const name of wanting) (groups[this.#urgency(name)] ??= []).push(name);
+    this.attention = groups.reverse().flat();
+  }
+
+  /** Return the worst look of those in which attention begins, and how many they are. */
+  #worstOf(names) {
+    let [worst, count] = ["normal", 0];
+    for (const name of names) {
+      if (!this.begins.has(name)) continue;
+      count += 1;
+      if (this.#rank(name) > RANKS[worst]) worst = this.look(name);
+    }
+    return [worst, count];
+  }
+
+  #urgency(name) {
+    const rank = this.#rank(name);
+    return (rank >= RANKS.faulty ? 20 : 0) + (this.begins.has(name) ? 10 : 0) + rank;
   }
 }

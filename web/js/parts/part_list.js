@@ -5,6 +5,7 @@
  */
 
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
+import { isSame as isSameList } from "/web/js/base/same.js";
 import { FilterBar } from "/web/js/parts/filter_bar.js";
 import { filtered, flatLines, matches, treeLines } from "/web/js/parts/lines.js";
 import { errorsByPart, Looks, structureOf } from "/web/js/parts/part_index.js";
@@ -68,7 +69,8 @@ class PartList extends HTMLElement {
     const isNew = structure !== this.#structure;
     if (isNew) this.#restructure(structure);
     const isChanged = this.#looks.take(structure, this.errors);
-    if (isNew || isChanged || this.#isStale) this.#list();
+    if (isNew || this.#isStale) this.#listAll();
+    if (isNew || isChanged || this.#isStale) this.#listUrgent();
     this.#isStale = false;
     this.urgent.show(this.urgentLines);
     this.tree.show(this.treeLines);
@@ -103,25 +105,31 @@ class PartList extends HTMLElement {
     this.#refresh();
   }
 
-  /** Make the lines anew; they stay the same objects until looks, filter or systems change. */
-  #list() {
+  /** Make the lines of the tree anew; they stay the same objects until filter or systems change. */
+  #listAll() {
     const { words, isAttention } = this.bar;
-    const structure = this.#structure;
-    const { attention, begins } = this.#looks;
-    const isWanted = (name) => this.bar.lets(this.#looks.look(name)) && matches(name, words);
-    const urgent = isAttention ? attention.filter(isWanted) : words.length > 0 ? [] : attention.slice(0, PINNED);
-    this.urgentLines = flatLines(urgent);
-    this.urgent.rows.resize(HEIGHTS.two());
-    this.urgent.hide(urgent.length === 0);
-    const more = isAttention || words.length > 0 ? 0 : attention.length - urgent.length;
-    setAttribute(this.more, "hidden", more === 0);
-    setText(this.more, moreWords(attention.slice(urgent.length), begins));
+    this.match = words.length > 0 ? filtered(this.#structure, words) : null;
+    const shown = this.match?.kept ?? null;
+    this.treeLines = isAttention ? [] : treeLines(this.#structure, this.#isOpen(this.match), shown);
     this.tree.hide(isAttention);
     setAttribute(this, "data-shown", isAttention ? "attention" : "all");
-    const match = words.length > 0 ? filtered(structure, words) : null;
-    this.treeLines = isAttention ? [] : treeLines(structure, this.#isOpen(match), match?.kept ?? null);
+  }
+
+  #listUrgent() {
+    const { words, isAttention } = this.bar;
+    const { attention, begins } = this.#looks;
+    const isPinned = !isAttention && words.length === 0;
+    const isWanted = (name) => this.bar.lets(this.#looks.look(name)) && matches(name, words);
+    const urgent = isPinned ? attention.slice(0, PINNED) : isAttention ? attention.filter(isWanted) : [];
+    // The same lines, so that they are not drawn anew.
+    if (!isSameList(urgent, this.urgentNames)) this.urgentLines = flatLines(urgent);
+    this.urgentNames = urgent;
+    this.urgent.hide(urgent.length === 0);
+    const left = isPinned ? attention.slice(urgent.length) : [];
+    setAttribute(this.more, "hidden", left.length === 0);
+    setText(this.more, moreWords(left, begins));
     this.bar.count([...begins].map((name) => this.#looks.look(name)));
-    this.#say(isAttention ? urgent.length : match?.found.size);
+    this.#say(isAttention ? urgent.length : this.match?.found.size);
   }
 
   #isOpen(match) {
@@ -178,6 +186,7 @@ class PartList extends HTMLElement {
 
   #resize() {
     this.tree.rows.resize(HEIGHTS.one());
+    this.urgent.rows.resize(HEIGHTS.two());
     this.#refresh();
   }
 

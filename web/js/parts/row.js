@@ -135,8 +135,8 @@ function short({ state, mode }) {
 }
 
 function stateWords(actual) {
-  const words = actual.state === "unknown" ? "not known" : label(actual);
-  return actual.inferred || actual.mode_inferred ? `${words} (*)` : words;
+  if (actual.state === "unknown") return "not known";
+  return actual.inferred || actual.mode_inferred ? `${label(actual)} (*)` : label(actual);
 }
 
 /** What a screen reader says of the row, without the age, which would not let it rest. */
@@ -147,7 +147,8 @@ function spoken(name, { part, look, below }, isFolded, cause) {
     stateWords(part.actual).replace("(*)", "inferred"),
     wanted && `target ${stateWords(wanted)}`,
     LOOK_WORDS[look],
-    cause !== LOOK_WORDS[look] && cause,
+    // What a row shows as its pill was said.
+    cause !== LOOK_WORDS[look] && !cause.startsWith("target ") && cause,
     isFolded && `${below.count} below: ${LOOK_WORDS[below.worst]}`,
   ];
   return said.filter(Boolean).join(", ");

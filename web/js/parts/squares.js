@@ -80,7 +80,6 @@ class PartSquares extends HTMLElement {
       setAttribute(this.ring, "y", Math.floor(at / this.columns));
     }
     setText(this.words, named >= 0 ? this.#wordsOf(named) : this.total);
-    if (!this.#hasFocus) return;
     setText(this.option, this.#wordsOf(this.#focused));
     setAttribute(this.option, "aria-posinset", this.#focused + 1);
     setAttribute(this.option, "aria-setsize", this.#names.length);

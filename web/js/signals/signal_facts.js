@@ -1,7 +1,7 @@
 /** What is set about a signal, in words: pure functions. */
 
 import { describe, valueText } from "/web/js/base/signal_catalog.js";
-import { duration, timeAndDay } from "/web/js/base/words.js";
+import { duration, modeName, timeAndDay } from "/web/js/base/words.js";
 
 /** Return `[name, text]` of each fact, the most asked for first; `monitor` is of /monitors or null. */
 export function factsOf(name, signal, monitor, now) {
@@ -53,8 +53,7 @@ function modeWords(because) {
   if (!because) return "";
   if (because === "default") return "in all other modes";
   const dot = because.lastIndexOf(".");
-  const mode = because.slice(dot + 1);
-  return `while ${because.slice(0, dot)} is in ${mode === "__DEFAULT__" ? "default" : mode}`;
+  return `while ${because.slice(0, dot)} is in ${modeName(because.slice(dot + 1))}`;
 }
 
 function monitorWords({ of, statistic, window_s, window_n }, monitor) {

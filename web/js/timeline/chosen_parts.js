@@ -1,6 +1,6 @@
 /** Which parts have lanes: all of a small robot, else the selected one and those that are kept. */
 
-const ALL_UP_TO = 4;
+const ALL_UP_TO = 6;
 const MOST = 8;
 const KEY = "pilothouse.timeline.parts";
 

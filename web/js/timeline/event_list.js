@@ -151,10 +151,11 @@ function makeLine(event) {
   const line = el("li", { "data-kind": event.kind });
   const time = el("time", { datetime: event.at, title: event.at }, timeOfDay(event.at));
   const show = () => line.dispatchEvent(new CustomEvent("ph-show-moment", { bubbles: true, detail: { at: Date.parse(event.at) } }));
+  const kind = el("span", { class: "event-kind" }, event.kind.replace(/[._]/g, " "));
   const name = `Show ${timeOfDay(event.at)} in all panels`;
   line.append(
     el("button", { type: "button", class: "event-time", title: name, onclick: show }, time),
-    el("span", { class: "event-words" }, event.words, " ", el("span", { class: "event-kind" }, event.kind)),
+    el("p", {}, el("span", { class: "event-words" }, event.words), " ", kind),
   );
   if (event.cause !== null) line.append(...causesOf(event));
   return line;

@@ -193,7 +193,7 @@ function take(group, found, from) {
   const isAll = found.length < MOST_EVENTS || timeOf(found[0]) < from;
   group.isFull = !isAll;
   group.from = isAll ? from : timeOf(found[0]);
-  group.events = [...found.slice(first), ...group.events.filter(({ id }) => id > last)];
+  group.events = [...found.slice(first).filter(group.takes), ...group.events.filter(({ id }) => id > last)];
 }
 
 /** Add an event to the group that shows it; the oldest are dropped from one that grew too large. */

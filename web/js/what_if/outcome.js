@@ -111,7 +111,7 @@ export class Outcome {
       return el(
         "li",
         {},
-        el("button", { class: "link", onclick: () => this.#goTo(t_s) }, seconds(t_s)),
+        el("button", { onclick: () => this.#goTo(t_s) }, seconds(t_s)),
         el("span", {}, words),
       );
     });

@@ -2,7 +2,8 @@
 
 import { partPath, request } from "/web/js/base/api.js";
 import { el, setAttribute } from "/web/js/base/dom.js";
-import { KINDS, modeWords } from "/web/js/what_if/steps.js";
+import { modeName } from "/web/js/base/words.js";
+import { KINDS } from "/web/js/what_if/steps.js";
 
 /** Calls `changed` when a step was added or taken away. */
 export class StepInputs {
@@ -73,7 +74,7 @@ export class StepInputs {
     const part = this.state.parts[name];
     if (!part) return [];
     const { items } = await request("GET", `${partPath(part)}/modes`).catch(() => ({ items: [] }));
-    return items.map(({ mode }) => [mode, modeWords(mode)]);
+    return items.map(({ mode }) => [mode, modeName(mode)]);
   }
 
   #submit(event) {

@@ -1,5 +1,7 @@
 /** What else may happen in a scenario: kinds of steps, their choices and words. */
 
+import { modeName } from "/web/js/base/words.js";
+
 const FAULTS = [
   ["die", "dies"],
   ["silent", "stops reporting"],
@@ -29,7 +31,7 @@ export const KINDS = {
     targets: ({ parts }) => [...ofKind(parts, "system"), ...ofKind(parts, "node")],
     options: (part, modesOf) => modesOf(part),
     step: (part, mode) => ({ change: { part, mode } }),
-    said: (part, mode) => `${part}: mode ${modeWords(mode)} requested`,
+    said: (part, mode) => `${part}: mode ${modeName(mode)} requested`,
   },
   hold: {
     words: "A hold is set or released",
@@ -61,11 +63,6 @@ export const KINDS = {
     said: () => "the vehicle stops reporting its pose",
   },
 };
-
-/** "default" for the mode without a name of its own. */
-export function modeWords(mode) {
-  return mode === "__DEFAULT__" ? "default" : mode;
-}
 
 function asked(method, path, body) {
   return { request: { method, path, ...(body ? { body } : {}) } };

@@ -1,7 +1,7 @@
 """A stop is tried until it is delivered."""
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
@@ -96,9 +96,8 @@ def test_any_other_answer_is_tried_again(answer: Answer, words: str) -> None:
 
 
 @pytest.fixture
-def impatient(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stop_delivery, "HANGS_S", 0.05)
-    return
 
 
 @pytest.mark.usefixtures("impatient")

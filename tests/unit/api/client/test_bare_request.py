@@ -97,11 +97,9 @@ def test_a_host_that_there_cannot_be_is_no_connection(host: str) -> None:
 
 
 def test_a_service_that_hangs_is_left_after_the_time() -> None:
-    with (
-        socket.create_server(("127.0.0.1", 0)) as listener,
-        pytest.raises(NoAnswerError, match="timed out") as left,
-    ):
-        url = f"http://127.0.0.1:{listener.getsockname()[1]}"
-        bare_request(Address.of(url), "GET", "/vehicle", 0.05)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        address = Address.of(f"http://127.0.0.1:{listener.getsockname()[1]}")
+        with pytest.raises(NoAnswerError, match="timed out") as left:
+            bare_request(address, "GET", "/vehicle", 0.05)
 
     assert not isinstance(left.value, NoConnectionError)

@@ -1,15 +1,16 @@
 """The keys of a terminal."""
 
 import asyncio
+import io
 import os
 import pty
 import sys
 import termios
 from collections.abc import Iterator
+from contextlib import suppress
 
 import pytest
 
-from api.cli.monitor import keyboard
 from api.cli.monitor.keyboard import Keyboard, single_keys, take_single_keys
 
 
@@ -17,7 +18,7 @@ from api.cli.monitor.keyboard import Keyboard, single_keys, take_single_keys
 def controller(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     """Return the other end of a terminal that is the standard input, in the foreground."""
     controller, terminal = pty.openpty()
-    monkeypatch.setattr(keyboard.os, "tcgetpgrp", lambda _: os.getpgrp())
+    monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp())
     with os.fdopen(terminal, closefd=True) as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)
         yield controller
@@ -34,13 +35,13 @@ async def ends(typed: bytes, controller: int, within_s: float = 0.3) -> bool:
     return bool(done)
 
 
-@pytest.mark.parametrize("typed", [b"q", b"Q"])
+@pytest.mark.parametrize("typed", [b"q", b"Q", b"xq", b"\x1b[Aq"])
 async def test_q_ends_the_monitor(typed: bytes, controller: int) -> None:
     with single_keys():
         assert await ends(typed, controller, within_s=10.0)
 
 
-@pytest.mark.parametrize("typed", [b"x", b"\x1bOQ", b" "])
+@pytest.mark.parametrize("typed", [b"x", b"\x1bOQ", b"\x1b[24~", b" "])
 async def test_other_keys_do_not(typed: bytes, controller: int) -> None:
     with single_keys():
         assert not await ends(typed, controller)
@@ -49,24 +50,22 @@ async def test_other_keys_do_not(typed: bytes, controller: int) -> None:
 async def test_in_the_background_nothing_is_read(
     controller: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(keyboard.os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
+    monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
     with single_keys():
         assert not await ends(b"q", controller)
 
 
 async def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -> None:
-    with open(os.devnull) as nothing:
-        monkeypatch.setattr(sys, "stdin", nothing)
-        with single_keys():
-            take_single_keys()
-            with pytest.raises(TimeoutError):
-                async with asyncio.timeout(0.05):
-                    await Keyboard().until_quit()
+    monkeypatch.setattr(sys, "stdin", io.StringIO("q"))
+    with single_keys():
+        take_single_keys()
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(Keyboard().until_quit(), 0.05)
 
 
 def test_keys_come_one_by_one_and_the_terminal_is_restored(controller: int) -> None:
     before = termios.tcgetattr(sys.stdin)
-    with pytest.raises(RuntimeError), single_keys():
+    with suppress(RuntimeError), single_keys():
         assert not termios.tcgetattr(sys.stdin)[3] & (termios.ECHO | termios.ICANON)
         # The shell resets it while the monitor is stopped.
         termios.tcsetattr(sys.stdin, termios.TCSANOW, before)

@@ -28,15 +28,23 @@ class Robot:
         return self.frames
 
 
-async def answer(front: FrontPage, accepted: str = "") -> Response:
-    return await front.answer(Request(http_scope("GET", "/", **{"accept-encoding": accepted})))
+class Asked:
+    """The page of one robot."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._front = FrontPage(PAGE)
+
+    async def answer(self, accepted: str = "") -> Response:
+        request = Request(http_scope("GET", "/", **{"accept-encoding": accepted}))
+        return await self._front.answer(request, self._robot.first_frames)
 
 
 async def test_the_page_holds_the_frame_and_is_kept_by_nobody() -> None:
-    front = FrontPage(PAGE, Robot('[{"type":"hello"}]').first_frames)
+    front = Asked(Robot('[{"type":"hello"}]'))
 
-    plain = await answer(front)
-    packed = await answer(front, "gzip")
+    plain = await front.answer()
+    packed = await front.answer("gzip")
 
     text = bytes(plain.body).decode()
     assert text == gzip.decompress(bytes(packed.body)).decode()
@@ -50,9 +58,9 @@ async def test_the_page_holds_the_frame_and_is_kept_by_nobody() -> None:
 
 
 async def test_without_a_frame_a_browser_may_keep_the_page() -> None:
-    front = FrontPage(PAGE, Robot(None).first_frames)
+    front = Asked(Robot(None))
 
-    bare = await answer(front, "gzip")
+    bare = await front.answer("gzip")
 
     assert gzip.decompress(bytes(bare.body)) == b"<body>\n</body>\n"
     assert bare.headers["cache-control"] == "no-cache"
@@ -61,9 +69,9 @@ async def test_without_a_frame_a_browser_may_keep_the_page() -> None:
 
 async def test_nothing_in_a_frame_can_end_the_block() -> None:
     told = [{"reason": "</script><!--<script>\u2028&amp;"}]
-    front = FrontPage(PAGE, Robot(json.dumps(told, ensure_ascii=False)).first_frames)
+    front = Asked(Robot(json.dumps(told, ensure_ascii=False)))
 
-    text = bytes((await answer(front)).body).decode()
+    text = bytes((await front.answer()).body).decode()
 
     (block,) = BLOCK.findall(text)
     assert "<" not in block
@@ -74,17 +82,17 @@ async def test_the_page_of_a_large_robot_is_compressed_rarely_however_often_it_i
     None
 ):
     robot = Robot(json.dumps([{"parts": {f"part_{n}": n * n for n in range(100_000)}}]))
-    front = FrontPage(PAGE, robot.first_frames)
+    front = Asked(robot)
 
-    answers = await asyncio.gather(*(answer(front, "gzip") for _ in range(20)))
+    answers = await asyncio.gather(*(front.answer("gzip") for _ in range(20)))
 
     assert robot.asked == 1
     assert len({bytes(each.body) for each in answers}) == 1
 
 
 async def test_other_tasks_run_while_a_large_page_is_compressed() -> None:
-    front = FrontPage(PAGE, Robot(json.dumps(["x" * 1_000_000])).first_frames)
-    asked = asyncio.create_task(answer(front, "gzip"))
+    front = Asked(Robot(json.dumps(["x" * 1_000_000])))
+    asked = asyncio.create_task(front.answer("gzip"))
     turns = 0
 
     while not asked.done():
