@@ -299,9 +299,12 @@ def test_on_a_phone_a_tap_far_down_the_list_shows_the_part_and_one_comes_back(
     page.get_by_role("tab", name="Parts").click()
     row = page.get_by_role("treeitem", name=re.compile("^node_090 "))
     # Only rows near what is seen are drawn.
-    page.get_by_role("treeitem").last.scroll_into_view_if_needed()
-    while row.count() == 0:
-        page.mouse.wheel(0, 400)
+    page.mouse.move(180, 300)
+    for _ in range(20):
+        page.mouse.wheel(0, 300)
+        page.wait_for_timeout(100)
+        if row.count() == 1:
+            break
     row.click()
     heading = page.locator("ph-part-panel h2")
     expect(heading).to_have_text("node_090")
