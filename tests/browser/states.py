@@ -194,7 +194,7 @@ def signals_pending(page: Page, service: Service) -> None:
     for value in (44, 49, 53, 58, 61):
         service.request("PATCH", "/mock/temperature", {"value": value})
         page.wait_for_timeout(1500)
-    row = page.locator("ph-signal-list:not([only]) ph-signal-row").filter(has_text="Temperature")
+    row = page.locator("ph-signal-list ph-signal-row").filter(has_text="Temperature")
     row.get_by_role("button").first.click()
     row.get_by_role("button", name="1 min", exact=True).click()
     row.locator(".chart-line[d^=M]").wait_for(state="attached")
@@ -364,12 +364,49 @@ def earlier_events(page: Page, service: Service) -> None:
     """The end of the list after two restarts, the earlier of them after a kill."""
     del service
     tell_earlier_runs(page)
+    page.get_by_role("tab", name="Log").click()
     button = page.get_by_role("button", name="Earlier")
     for _ in range(2):
         button.click()
         page.wait_for_timeout(500)
     button.scroll_into_view_if_needed()
     page.locator("li.restart").last.scroll_into_view_if_needed()
+
+
+def timeline(page: Page, service: Service) -> None:
+    """Some minutes of work with all that a timeline shows, a restart among it."""
+    post(service, "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
+    drive(service)
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    time.sleep(3)
+    service.request("DELETE", "/holds/gate")
+    for value in (0.3, 0.9) * 4:
+        service.request("PATCH", "/mock/battery_level", {"value": value})
+        time.sleep(0.4)
+    service.kill()
+    time.sleep(5)
+    service.start()
+    post(service, "/systems/actuation/mode?wait=15", {"mode": "PERFORMANCE"})
+    service.request("PATCH", "/mock/temperature", {"value": 70})
+    time.sleep(4)
+    service.request("PUT", "/emergency_stop", {"engaged": True, "reason": "smoke in hall 3"})
+    time.sleep(4)
+    service.request("PUT", "/emergency_stop", {"engaged": False})
+    service.request("PATCH", "/mock/temperature", {"value": 30})
+    page.wait_for_timeout(6000)
+    if page.viewport_size == {"width": 360, "height": 640}:
+        page.get_by_role("tab", name="Log").click()
+    page.get_by_role("button", name="1 min", exact=True).click()
+    page.wait_for_timeout(1500)
+
+
+def timeline_pinned(page: Page, service: Service) -> None:
+    timeline(page, service)
+    canvas = page.get_by_role("slider", name="Timeline")
+    box = canvas.bounding_box()
+    assert box is not None
+    canvas.click(position={"x": 0.84 * box["width"], "y": 30})
+    page.get_by_text("Panels show").wait_for()
 
 
 def in_utm(frame: dict[str, Any]) -> None:
@@ -408,6 +445,8 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "parts_attention": ("crowded", parts_attention),
     "parts_filtered": ("crowded", parts_filtered),
     "earlier_events": ("example", earlier_events),
+    "timeline": ("example", timeline),
+    "timeline_pinned": ("example", timeline_pinned),
     "utm": ("example", patched(in_utm)),
     "forced_colors": ("example", stopped),
     "no_contact": ("example", no_contact),
