@@ -373,6 +373,7 @@ class Timeline extends HTMLElement {
     const time = typeof at === "number" ? at : Date.parse(at);
     if (!Number.isFinite(time) || !this.#view) return;
     this.#show("timeline");
+    this.dispatchEvent(new CustomEvent("ph-tab", { bubbles: true, detail: "log" }));
     this.#pin(time);
   }
 
