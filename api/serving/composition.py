@@ -71,6 +71,8 @@ class ServeOptions:
     allowed_hosts: tuple[str, ...] = ()
     allowed_origins: tuple[str, ...] = ()
     log_level: str = "info"
+    form: Literal["text", "json"] = "text"
+    """Of the greeting."""
     data: str = MEMORY
     """Folder for what survives a restart, or `MEMORY`, or `USUAL`."""
 

@@ -4,6 +4,7 @@ Owns the handling of signals, and every task.
 """
 
 import asyncio
+import json
 import logging
 import os
 import socket
@@ -153,7 +154,10 @@ async def _make_server(
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     await prepare(app)
     url = url_of(network.sockets, options.host)
-    greeting = "\n".join(greet(composition, options, url, network.access))
+    if options.form == "json":
+        greeting = json.dumps(greeting_json(composition, options, url, network.access))
+    else:
+        greeting = "\n".join(greet(composition, options, url, network.access))
     return web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
 
 
@@ -267,6 +271,21 @@ def greet(
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
     yield "Ctrl-C stops the service and the vehicle; nodes stay as they are."
+
+
+def greeting_json(
+    composition: Composition, options: ServeOptions, url: str, access: Access
+) -> dict[str, object]:
+    """Return what a program needs that starts the service: first of all, where it listens."""
+    journal = composition.supervisor.journal
+    return {
+        "url": url,
+        "version": installed_version(),
+        "model": None if options.model is None else str(options.model),
+        "data": None if journal is None else journal.status().path,
+        "token_needed": access.required,
+        "simulated": list(composition.supervisor.simulated),
+    }
 
 
 def _remembering(supervisor: Supervisor) -> Iterator[str]:

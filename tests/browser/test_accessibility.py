@@ -22,14 +22,15 @@ SETTLE_MS = 600
 def test_axe_finds_no_violation(browser: Browser, name: str) -> None:
     robot, act = STATES[name]
     width, height = SCREENS["desktop"]
-    forced = "active" if name == "forced_colors" else "none"
     context = browser.new_context(
-        viewport={"width": width, "height": height}, has_touch=True, forced_colors=forced
+        viewport={"width": width, "height": height},
+        has_touch=True,
+        forced_colors="active" if name == "forced_colors" else "none",
     )
     with running_robot(robot) as service:
         page = context.new_page()
         page.goto(service.url)
-        page.locator("ph-part-panel h2").wait_for()
+        page.locator("ph-part-panel h2").wait_for(state="attached")
         act(page, service)
         found = [
             violation

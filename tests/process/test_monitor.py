@@ -97,7 +97,7 @@ def test_on_a_terminal_it_follows_an_error_and_leaves_the_terminal_as_it_was(end
             case "SIGTERM":
                 terminal.process.send_signal(signal.SIGTERM)
             case _:
-                os.write(terminal.controller, b"xq")
+                os.write(terminal.controller, b"x\x1bOQ")
                 assert terminal.process.poll() is None
                 os.write(terminal.controller, b"q")
         end = _read_until(terminal.controller, b"\x1b[?25h")

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from api.cli.commands.command import Command
+from api.cli.commands.command import Command, add_format, say_json
 from api.cli.commands.record_options import add_record, pieces_in
-from api.terminal_text import complain, counted
+from api.terminal_text import complain, counted, say
 
 if TYPE_CHECKING:
     from service.recorded_pieces import Piece
@@ -40,6 +40,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         help="folder or file that is written; default: pilothouse-export, for mcap"
         " pilothouse-export.mcap",
     )
+    add_format(parser, "json: {path, steps} or {path, messages}")
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -54,7 +55,11 @@ def _run(options: argparse.Namespace) -> int:
         return UNUSABLE
     try:
         write = _write_mcap if options.to == "mcap" else _write_jsonl
-        print(f"{out}: {write(pieces_in(options), out, options)}")
+        count, what = write(pieces_in(options), out, options)
+        if options.format == "json":
+            say_json({"path": str(out), f"{what}s": count})
+        else:
+            say(f"{out}: {counted(count, what)}")
     except (NoMcapError, PilothouseError, UnusableFolderError, *FAILURES) as error:
         complain(str(error))
         return UNUSABLE
@@ -63,13 +68,17 @@ def _run(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _write_jsonl(pieces: Iterator["Piece"], out: Path, _: argparse.Namespace) -> str:
+def _write_jsonl(pieces: Iterator["Piece"], out: Path, _: argparse.Namespace) -> tuple[int, str]:
+    """Write the files; return how many of what are in them."""
     from service.exported_record import write_piece
 
-    return counted(sum(write_piece(piece, out) for piece in pieces), "step")
+    return sum(write_piece(piece, out) for piece in pieces), "step"
 
 
-def _write_mcap(pieces: Iterator["Piece"], out: Path, options: argparse.Namespace) -> str:
+def _write_mcap(
+    pieces: Iterator["Piece"], out: Path, options: argparse.Namespace
+) -> tuple[int, str]:
+    """Write the file; return how many of what are in it."""
     from api.distribution import installed_version
     from api.recording.mcap_export import export_mcap
     from api.recording.mcap_file import require_mcap
@@ -77,7 +86,7 @@ def _write_mcap(pieces: Iterator["Piece"], out: Path, options: argparse.Namespac
     require_mcap()
     tell = _progress(time.monotonic)
     count = export_mcap(pieces, installed_version(), out, options.first_event, tell)
-    return counted(count, "message")
+    return count, "message"
 
 
 def _progress(clock: Callable[[], float]) -> Callable[[int, int], None]:

@@ -4,9 +4,10 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from api.cli.commands.command import Command, port
+from api.cli.commands.command import Command, add_format, port, say_json
 from api.cli.commands.record_options import add_record, pieces_in
-from api.terminal_text import complain, counted
+from api.client.outcomes import Json
+from api.terminal_text import complain, counted, say
 
 if TYPE_CHECKING:
     from service.recorded_pieces import Piece
@@ -33,6 +34,7 @@ exit code: 0 everything follows again;
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
     add_record(parser)
+    add_format(parser, "json: one object per piece")
     parser.add_argument("--page", action="store_true", help="show it in the monitor page")
     parser.add_argument("--port", type=port, default=8000, help="of the page; default: %(default)s")
     parser.add_argument(
@@ -53,7 +55,7 @@ def _run(options: argparse.Namespace) -> int:
     from service.storage.sqlite.connection import FAILURES
 
     try:
-        return _show(options) if options.page else replay(pieces_in(options))
+        return _show(options) if options.page else replay(pieces_in(options), options.format)
     except (PilothouseError, UnusableFolderError, *FAILURES) as error:
         complain(str(error))
         return UNUSABLE
@@ -75,11 +77,12 @@ def _show(options: argparse.Namespace) -> int:
     return SAME
 
 
-def replay(pieces: Iterator["Piece"]) -> int:
+def replay(pieces: Iterator["Piece"], how: str) -> int:
     """Replay one piece after the other, up to the first difference; return the exit code.
 
     Args:
         pieces: Of a record.
+        how: `text` or `json`.
 
     Raises:
         PilothouseError: A piece is broken, or its core cannot be made again.
@@ -92,11 +95,25 @@ def replay(pieces: Iterator["Piece"]) -> int:
         if piece.boot.version != version:
             complain(f"run {piece.run} was recorded by release {piece.boot.version}")
         replayed = replay_piece(piece, version)
-        start = "the start of the run" if piece.state is None else f"step {piece.first}"
-        print(f"run {piece.run}, from {start}: {_verdict(replayed)}")
+        if how == "json":
+            say_json(_summary(piece, replayed))
+        else:
+            start = "the start of the run" if piece.state is None else f"step {piece.first}"
+            say(f"run {piece.run}, from {start}: {_verdict(replayed)}")
         if replayed.difference is not None:
             return DIFFERENT
     return SAME
+
+
+def _summary(piece: "Piece", replayed: "Replayed") -> Json:
+    difference = replayed.difference
+    return {
+        "run": piece.run,
+        "first_step": None if piece.state is None else piece.first,
+        "steps": replayed.steps,
+        "last_event": replayed.last_event,
+        "difference": None if difference is None else difference.words,
+    }
 
 
 def _verdict(replayed: "Replayed") -> str:

@@ -76,6 +76,12 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "token, write; can be repeated",
     )
     parser.add_argument(
+        "--format",
+        default="text",
+        choices=("text", "json"),
+        help="of the greeting; json: {url, version, model, data, token_needed, simulated}",
+    )
+    parser.add_argument(
         "--log-level", default="info", choices=("debug", "info", "warning", "error")
     )
 
@@ -96,6 +102,7 @@ def _run(options: argparse.Namespace) -> int:
             allowed_hosts=tuple(options.allowed_host),
             allowed_origins=tuple(options.allowed_origin),
             log_level=options.log_level,
+            form=options.format,
             data=options.data,
         )
     )

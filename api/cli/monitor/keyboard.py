@@ -2,13 +2,16 @@
 
 import asyncio
 import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 _LOOK_AGAIN_S = 1.0
 _MOST_BYTES = 64
-_QUIT = b"qQ"
+_QUIT = frozenset(b"qQ")
+_OF_SEVERAL_BYTES = re.compile(rb"\x1b(?:O.|\[[0-9;]*.)?")
+"""Keys such as F2, which sends ESC O Q."""
 
 
 class Keyboard:
@@ -46,8 +49,7 @@ class Keyboard:
         if not typed:
             # The terminal has gone away.
             loop.remove_reader(sys.stdin)
-        # Only at its begin: keys such as F2 are several bytes, and Q is among these.
-        if typed[:1] and typed[:1] in _QUIT:
+        if not _QUIT.isdisjoint(_OF_SEVERAL_BYTES.sub(b"", typed)):
             self._quit.set()
 
 

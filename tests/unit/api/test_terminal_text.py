@@ -1,6 +1,6 @@
 import pytest
 
-from api.terminal_text import complain, counted, finding_line, visible
+from api.terminal_text import complain, counted, finding_line, say, visible
 from domain.findings import Finding
 
 
@@ -10,6 +10,17 @@ def test_a_complaint_names_the_program_on_the_standard_error(
     complain("no such file")
 
     assert capsys.readouterr() == ("", "pilothouse: no such file\n")
+
+
+def test_a_line_cannot_steer_the_terminal_and_is_one_line(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    say("arm\x1b[2J\n")
+    complain("two\nlines \x1b")
+
+    told = capsys.readouterr()
+    assert told.out == "arm\\x1b[2J\\n\n"
+    assert told.err == "pilothouse: two\nlines \\x1b\n"
 
 
 def test_a_finding_without_a_place_points_at_the_begin_of_the_file() -> None:

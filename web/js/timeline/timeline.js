@@ -6,6 +6,7 @@ import { timeAndDay } from "/web/js/base/words.js";
 import { chosenParts, loadKept, storeKept } from "/web/js/timeline/chosen_parts.js";
 import { EventRecord, MOST_EVENTS } from "/web/js/timeline/event_record.js";
 import "/web/js/timeline/event_list.js";
+import { itemsAt } from "/web/js/timeline/describe.js";
 import { exportEvents } from "/web/js/timeline/export.js";
 import { listen } from "/web/js/timeline/gestures.js";
 import { keysOf } from "/web/js/timeline/keys.js";
@@ -280,7 +281,7 @@ class Timeline extends HTMLElement {
 
   /** The lane that the keys are on, while they are. */
   #focusedLane() {
-    return document.activeElement === this.lanes.canvas ? this.#lane : null;
+    return this.lanes.canvas.matches(":focus-visible") ? this.#lane : null;
   }
 
   #cursorX() {
@@ -301,7 +302,8 @@ class Timeline extends HTMLElement {
     const y = this.lanes.middleOf(this.#lane);
     const x = this.#cursorX();
     const box = this.lanes.canvas.getBoundingClientRect();
-    const found = { ...this.lanes.at(x, y), at, lane };
+    const items = lane ? itemsAt(lane, at).filter(({ tone }) => tone !== "none") : [];
+    const found = { at, lane, items };
     this.tip.show(found, this.#dark, this.#now(), box.left + x, box.top + y);
     this.#speak(this.#now());
   }

@@ -7,7 +7,7 @@ import pytest
 from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
 from api.http.access import Access
 from api.serving.composition import MisuseError, ServeOptions, compose, read_files
-from api.serving.serving import access_of, greet, serve
+from api.serving.serving import access_of, greet, greeting_json, serve
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph
 
@@ -64,6 +64,19 @@ def test_the_greeting_of_a_service_with_a_token_shows_how_to_send_it_and_not_the
     assert "token needed" in told
     assert TOKEN not in told
     assert "token" not in greeting(ServeOptions()).lower()
+
+
+def test_a_program_that_starts_the_service_is_told_where_it_listens() -> None:
+    options = ServeOptions()
+    composition = compose(options, ManualClock(), read_files(options))
+
+    told = greeting_json(composition, options, URL, Access.with_token(TOKEN))
+
+    assert told["url"] == URL
+    assert told["token_needed"] is True
+    assert told["model"] is None
+    assert told["simulated"] == ["nodes", "signals", "vehicle"]
+    assert TOKEN not in str(told)
 
 
 # --- who is let in ------------------------------------------------------------------------------

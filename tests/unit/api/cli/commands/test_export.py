@@ -133,3 +133,14 @@ def test_a_file_that_is_there_is_not_overwritten(
 
     assert out.read_text() == "mine"
     assert "exists already" in capsys.readouterr().err
+
+
+def test_programs_are_told_in_json(
+    data: Path, robot: RecordedRobot, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "bug"
+
+    assert export(data, out, "--format", "json") == 0
+
+    told = json.loads(capsys.readouterr().out)
+    assert told == {"path": str(out), "steps": len(robot.taken)}

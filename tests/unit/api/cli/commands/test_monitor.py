@@ -20,11 +20,13 @@ def test_monitor_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> N
     main(["monitor", "http://robot:9000", "--once", "--format", "json"])
     monkeypatch.setenv("PILOTHOUSE_URL", "http://other:8000")
     main(["monitor"])
+    main(["monitor", "--url", "http://third:8000"])
 
     assert given == [
         ("http://127.0.0.1:8000", "text", False),
         ("http://robot:9000", "json", True),
         ("http://other:8000", "text", False),
+        ("http://third:8000", "text", False),
     ]
 
 

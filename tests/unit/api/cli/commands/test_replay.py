@@ -148,3 +148,17 @@ def test_what_was_exported_has_a_page_too(data: Path, tmp_path: Path) -> None:
 
     with replay_page(out) as process:
         assert httpx.get(f"{process.url}/replay").json()["robot"] == "bug"
+
+
+def test_programs_get_an_object_for_each_piece(
+    data: Path, robot: RecordedRobot, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["replay", str(data), "--format", "json"]) == 0
+
+    assert json.loads(capsys.readouterr().out) == {
+        "run": 1,
+        "first_step": None,
+        "steps": len(robot.taken),
+        "last_event": robot.events[-1].id,
+        "difference": None,
+    }

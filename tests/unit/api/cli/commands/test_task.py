@@ -1,4 +1,5 @@
 import io
+import json
 import os
 import signal
 from pathlib import Path
@@ -271,6 +272,32 @@ def test_the_current_task_is_canceled(service: Service) -> None:
     assert cancel(service.client, "text", said.append) is Outcome.SUCCEEDED
     assert said == ["task t1 after 4.0 of 10.0 m: canceled"]
     assert service.paths[1] == "DELETE /tasks/current"
+
+
+def test_programs_get_the_task_that_was_canceled(service: Service) -> None:
+    service.current = httpx.Response(200, json=task())
+    ended = task("CANCELED", 4, reason="canceled")
+    service.by_id = httpx.Response(200, json=ended)
+    said: list[str] = []
+
+    assert cancel(service.client, "json", said.append) is Outcome.SUCCEEDED
+    assert json.loads(said[0]) == {"task": ended}
+
+
+def test_programs_get_only_the_task_as_it_ended(service: Service, track: Path) -> None:
+    ended = task("SUCCEEDED", 10)
+    service.by_id = httpx.Response(200, json=ended)
+
+    driven = Driven(service, track, shows(task(distance_m=5)), shows(ended), is_json=True)
+
+    assert driven.outcome is Outcome.SUCCEEDED
+    assert [json.loads(line) for line in driven.said] == [ended]
+
+
+def test_programs_get_only_the_preview(service: Service, track: Path) -> None:
+    driven = Driven(service, track, is_json=True, preview=True)
+
+    assert [json.loads(line) for line in driven.said] == [PREVIEW]
 
 
 def test_to_cancel_nothing_is_no_failure(service: Service) -> None:

@@ -7,10 +7,11 @@ import httpx
 import pytest
 
 from api.cli.command_line import main
-from api.cli.commands.why import reason_lines, why, why_not
+from api.cli.commands.why import reason_lines, why, why_not, why_robot
 from api.client.address import Address
 from api.client.outcomes import Outcome, ServiceProblemError
 from api.client.service_client import ServiceClient
+from tests.support.asked_service import AskedService
 
 
 def _blocker(code: str, message: str, *path: str, **more: object) -> dict[str, Any]:
@@ -112,6 +113,53 @@ def test_an_unknown_mode_is_answered_with_those_that_there_are() -> None:
     assert unknown.value.problem["hint"] == (
         "known: MODERATE, PERFORMANCE; did you mean PERFORMANCE?"
     )
+
+
+class Robot:
+    """What keeps a robot from driving."""
+
+    def __init__(self, **more: object) -> None:
+        self.answers = {
+            "/system_state": {"state": "RUNNING", "task_status": "NO_TASK", "reasons": []},
+            "/holds": {"items": []},
+            "/emergency_stop": {"engaged": False},
+            **more,
+        }
+
+    def why(self, how: str = "text") -> tuple[Outcome, list[str]]:
+        service = AskedService({f"GET {path}": body for path, body in self.answers.items()})
+        said: list[str] = []
+        return why_robot(service.client(), how, said.append), said
+
+
+LUNCH = {"owner": "operator", "reason": "lunch", "since_at": "2026-05-04T12:00:00.000Z"}
+
+
+def test_a_robot_that_nothing_keeps_from_driving() -> None:
+    said = ["the robot is RUNNING, no task; nothing keeps it"]
+    assert Robot().why() == (Outcome.SUCCEEDED, said)
+
+
+def test_errors_stop_and_holds_keep_a_robot_from_driving() -> None:
+    state = {"state": "ERROR", "task_status": "PAUSED_TASK", "reasons": [LOW]}
+    stop = {"engaged": True, "by": "http:10.0.0.7", "reason": "dog"}
+    robot = Robot(**{"/system_state": state, "/holds": {"items": [LUNCH]}, "/emergency_stop": stop})
+
+    outcome, said = robot.why()
+
+    assert outcome is Outcome.FAILED
+    assert said == [
+        "the robot is ERROR, paused task",
+        "  emergency stop by http:10.0.0.7: dog",
+        "  CONDITION: battery_level is 0.21, needs >= 0.3  (actuation > battery_level)",
+        "  held by operator: lunch  [since 2026-05-04T12:00:00.000Z]",
+    ]
+
+
+def test_what_keeps_a_robot_is_written_as_json() -> None:
+    _, (told,) = Robot().why("json")
+
+    assert set(json.loads(told)) == {"system_state", "holds", "emergency_stop"}
 
 
 def test_json_is_what_the_service_answers() -> None:

@@ -35,13 +35,13 @@ async def ends(typed: bytes, controller: int, within_s: float = 0.3) -> bool:
     return bool(done)
 
 
-@pytest.mark.parametrize("typed", [b"q", b"Q"])
+@pytest.mark.parametrize("typed", [b"q", b"Q", b"xq", b"\x1b[Aq"])
 async def test_q_ends_the_monitor(typed: bytes, controller: int) -> None:
     with single_keys():
         assert await ends(typed, controller, within_s=10.0)
 
 
-@pytest.mark.parametrize("typed", [b"x", b"\x1bOQ", b" "])
+@pytest.mark.parametrize("typed", [b"x", b"\x1bOQ", b"\x1b[24~", b" "])
 async def test_other_keys_do_not(typed: bytes, controller: int) -> None:
     with single_keys():
         assert not await ends(typed, controller)
