@@ -113,6 +113,7 @@ mutation: $(INSTALLED_DEV) ## mutation tests of the core: about 7,600 mutants
 # With ARGS only these tests are meant.
 soak: $(INSTALLED_DEV) $(if $(ARGS),,coverage mutation) ## coverage, mutation, and all tests with many more generated examples
 	@PILOTHOUSE_SOAK=1 $(BIN)/pytest -rs -m "not bench and not browser and not image and not ros2" --timeout=0 $(ARGS)
+	@$(if $(ARGS),,PILOTHOUSE_SOAK=1 $(BIN)/pytest -rs --timeout=0 tests/browser/test_heap.py)
 
 lowest: $(INSTALLED_DEV) ## the tests, with the oldest dependencies that pyproject.toml allows
 	@$(PIP_INSTALL) uv

@@ -46,12 +46,19 @@ def choose(page: "Page", content: bytes, name: str = "field.csv") -> None:
         open_sheet(page)
     file: Any = {"name": name, "mimeType": "text/csv", "buffer": content}
     page.get_by_label("Choose a CSV").set_input_files(file)
+    # A process of its own reads the file, and the first one has to start.
+    expect(sheet(page)).not_to_contain_text("Checking", timeout=20_000)
 
 
 def start(page: "Page", service: "Service", length_m: int) -> None:
     choose(page, service.track_ahead(length_m))
     page.get_by_role("button", name="Start", exact=True).click()
-    expect(sentence(page)).to_contain_text("RUNNING: task ")
+    expect_running(page)
+
+
+def expect_running(page: "Page") -> None:
+    # A process of its own reads the file, and the first one has to start.
+    expect(sentence(page)).to_contain_text("RUNNING: task ", timeout=20_000)
 
 
 def hold(button: "Locator", page: "Page") -> None:

@@ -20,6 +20,7 @@ from playwright.sync_api import Browser, Page, WebSocketRoute, sync_playwright
 
 from tests.browser.earlier_runs import tell_earlier_runs
 from tests.browser.robots import (
+    crowded_robot,
     guarded_robot,
     large_robot,
     many_signals_robot,
@@ -36,7 +37,14 @@ LOST_MS = 3600
 Act = Callable[[Page, Service], None]
 MOBILE = PROJECT / "examples" / "mobile_robot"
 Robot = Literal[
-    "example", "troubled", "large", "guarded", "guarded_failing", "mobile", "many_signals"
+    "example",
+    "troubled",
+    "large",
+    "crowded",
+    "guarded",
+    "guarded_failing",
+    "mobile",
+    "many_signals",
 ]
 MANIPULATION = "/systems/mobile_manipulation"
 
@@ -186,7 +194,7 @@ def signals_pending(page: Page, service: Service) -> None:
     for value in (44, 49, 53, 58, 61):
         service.request("PATCH", "/mock/temperature", {"value": value})
         page.wait_for_timeout(1500)
-    row = page.locator("ph-signal-list:not([only]) ph-signal-row").filter(has_text="Temperature")
+    row = page.locator("ph-signal-list ph-signal-row").filter(has_text="Temperature")
     row.get_by_role("button").first.click()
     row.get_by_role("button", name="1 min", exact=True).click()
     row.locator(".chart-line[d^=M]").wait_for(state="attached")
@@ -275,10 +283,41 @@ def far_down(page: Page, _: Service) -> None:
     select(page, "node_090")
 
 
+def show_parts(page: Page) -> None:
+    """Go to the tab of parts, where parts do not stand beside everything else."""
+    tab = page.get_by_role("tab", name="Parts")
+    if tab.is_visible():
+        tab.click()
+
+
 def select(page: Page, part: str) -> None:
-    row = page.get_by_role("treeitem").filter(has_text=part).last
-    row.scroll_into_view_if_needed()
-    row.click()
+    show_parts(page)
+    # Only rows that can be seen are drawn.
+    page.get_by_role("searchbox", name="Filter parts by name").fill(part)
+    page.get_by_role("treeitem", name=re.compile(f"^{part} ")).last.click()
+
+
+def parts_300(page: Page, service: Service) -> None:
+    """Two nodes are dead, one failed, one was made slow; one of the areas is open."""
+    change = service.request("POST", "/systems/carrier/mode", {"mode": "__DEFAULT__"})["id"]
+    while service.request("GET", f"/changes/{change}")["status"] == "running":
+        time.sleep(0.2)
+    slowed = "perception/unit_03/camera_wheel_003"
+    service.request("PATCH", f"/nodes/{slowed}/parameters", {"rate": 2})
+    show_parts(page)
+    for system in ("perception", "perception_unit_03"):
+        page.get_by_role("treeitem", name=re.compile(f"^{system} ")).locator(".twist").click()
+    page.wait_for_timeout(1000)
+
+
+def parts_attention(page: Page, service: Service) -> None:
+    parts_300(page, service)
+    page.locator(".choice").filter(has_text="Attention").click()
+
+
+def parts_filtered(page: Page, service: Service) -> None:
+    parts_300(page, service)
+    page.get_by_role("searchbox", name="Filter parts by name").fill("unit_03 camera")
 
 
 def patched(change: Callable[[dict[str, Any]], None]) -> Act:
@@ -325,12 +364,49 @@ def earlier_events(page: Page, service: Service) -> None:
     """The end of the list after two restarts, the earlier of them after a kill."""
     del service
     tell_earlier_runs(page)
+    page.get_by_role("tab", name="Log").click()
     button = page.get_by_role("button", name="Earlier")
     for _ in range(2):
         button.click()
         page.wait_for_timeout(500)
     button.scroll_into_view_if_needed()
     page.locator("li.restart").last.scroll_into_view_if_needed()
+
+
+def timeline(page: Page, service: Service) -> None:
+    """Some minutes of work with all that a timeline shows, a restart among it."""
+    post(service, "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
+    drive(service)
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    time.sleep(3)
+    service.request("DELETE", "/holds/gate")
+    for value in (0.3, 0.9) * 4:
+        service.request("PATCH", "/mock/battery_level", {"value": value})
+        time.sleep(0.4)
+    service.kill()
+    time.sleep(5)
+    service.start()
+    post(service, "/systems/actuation/mode?wait=15", {"mode": "PERFORMANCE"})
+    service.request("PATCH", "/mock/temperature", {"value": 70})
+    time.sleep(4)
+    service.request("PUT", "/emergency_stop", {"engaged": True, "reason": "smoke in hall 3"})
+    time.sleep(4)
+    service.request("PUT", "/emergency_stop", {"engaged": False})
+    service.request("PATCH", "/mock/temperature", {"value": 30})
+    page.wait_for_timeout(6000)
+    if page.viewport_size == {"width": 360, "height": 640}:
+        page.get_by_role("tab", name="Log").click()
+    page.get_by_role("button", name="1 min", exact=True).click()
+    page.wait_for_timeout(1500)
+
+
+def timeline_pinned(page: Page, service: Service) -> None:
+    timeline(page, service)
+    canvas = page.get_by_role("slider", name="Timeline")
+    box = canvas.bounding_box()
+    assert box is not None
+    canvas.click(position={"x": 0.84 * box["width"], "y": 30})
+    page.get_by_text("Panels show").wait_for()
 
 
 def in_utm(frame: dict[str, Any]) -> None:
@@ -365,7 +441,12 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "rejected": ("example", rejected),
     "sending": ("example", sending),
     "far_down": ("large", far_down),
+    "parts_300": ("crowded", parts_300),
+    "parts_attention": ("crowded", parts_attention),
+    "parts_filtered": ("crowded", parts_filtered),
     "earlier_events": ("example", earlier_events),
+    "timeline": ("example", timeline),
+    "timeline_pinned": ("example", timeline_pinned),
     "utm": ("example", patched(in_utm)),
     "forced_colors": ("example", stopped),
     "no_contact": ("example", no_contact),
@@ -383,6 +464,7 @@ def running_robot(kind: Robot) -> Iterator[Service]:
             "example": (),
             "troubled": troubled_robot(folder),
             "large": large_robot(folder),
+            "crowded": crowded_robot(folder, faulty=True),
             "guarded": guarded_robot(folder),
             "many_signals": many_signals_robot(folder),
             "mobile": (str(MOBILE / "model.yaml"), "--robot", str(MOBILE / "robot.yaml")),

@@ -20,7 +20,7 @@ import pytest
 if TYPE_CHECKING:
     from playwright.sync_api import ConsoleMessage, Page
 
-START_WITHIN_S = 40.0
+START_WITHIN_S = 90.0
 CHROMIUM = Path("/usr/bin/chromium")
 CHROMIUM_ARGUMENTS = [
     "--headless",

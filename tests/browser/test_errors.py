@@ -8,9 +8,11 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.station import Complaints, Service, free_port
+from tests.browser.test_operator import serving
+from tests.support.shared import PROJECT
 
 pytestmark = pytest.mark.browser
 
@@ -190,7 +192,7 @@ def test_an_error_that_comes_and_goes_says_what_would_calm_it(
     )
 
 
-def test_what_follows_from_an_error_is_folded_below_it(desktop: Page) -> None:
+def test_roots_come_first_with_what_follows_from_each(desktop: Page) -> None:
     desktop.evaluate(
         """async () => {
           const { errorGroups } = await import("/web/js/base/error_groups.js");
@@ -274,3 +276,40 @@ def told(*, part: str | None, error: str) -> dict[str, Any]:
 def error_of(service: Service) -> Any:  # noqa: ANN401
     listed = service.request("GET", "/errors")["items"]
     return next(item for item in listed if item["error"] == "OVERLOAD")
+
+
+# --- consequences --------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def rover(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    mobile = PROJECT / "examples" / "mobile_robot"
+    arguments = (str(mobile / "model.yaml"), "--robot", str(mobile / "robot.yaml"))
+    yield from serving(tmp_path_factory.mktemp("rover"), arguments)
+
+
+def test_what_follows_from_an_error_is_folded_below_it_and_is_acknowledged_there(
+    browser: Browser, rover: Service
+) -> None:
+    page = browser.new_page(viewport={"width": 1440, "height": 900})
+    page.goto(rover.url)
+    fault = {"active": True, "message": "overcurrent"}
+    rover.request("POST", "/nodes/left_drive/errors/FAULT", fault)
+    root = page.locator(".alarms > li > ph-alarm").filter(has_text="overcurrent")
+    expect(root).to_contain_text("Critical: the task cannot go on (base.LAME)", timeout=10_000)
+    expect(root).to_have_attribute("data-severity", "critical")
+    expect(page).to_have_title("(1) ERROR · Pilothouse")
+    below = root.locator("ph-alarm")
+    expect(below).to_have_count(0)
+
+    root.locator("summary").filter(has_text="1 follows from this").click()
+    below.locator("summary").first.click()
+    expect(below).to_contain_text("push the robot only with both drives without power")
+    below.get_by_role("button", name="Acknowledge (hold)").click(delay=1200)
+    expect(below.locator(".tags")).to_have_text("acknowledged")
+    expect(page).to_have_title("ERROR · Pilothouse")
+
+    root.get_by_role("button", name="Show left_drive").click()
+    expect(page.locator("ph-part-panel h2")).to_have_text("left_drive")
+    expect(page.get_by_role("list", name="Errors of this part")).to_contain_text("overcurrent")
+    page.close()

@@ -9,8 +9,8 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.station import Complaints, Service
 from tests.browser.states import aborted, drive, patched
+from tests.browser.station import Complaints, Service
 
 pytestmark = pytest.mark.browser
 
@@ -89,7 +89,7 @@ def test_what_the_sentence_has_no_room_for_is_one_press_away(
     expect(more).to_be_visible()
     more.click()
     why = desktop.locator("#why")
-    expect(why).to_contain_text("temperature")
+    expect(why).to_contain_text("TEMPERATURE_HIGH")
     assert why.evaluate("(node) => node.contains(document.activeElement)")
 
 
@@ -175,4 +175,6 @@ def test_the_menu_leads_to_the_documents_of_the_interface(desktop: Page) -> None
 def test_the_connection_tells_its_round_trip(desktop: Page) -> None:
     contact = header(desktop).locator(".contact")
     expect(contact).to_contain_text(re.compile(r"Connected\d+ ms"), timeout=SLOW_MS)
-    expect(contact).to_have_attribute("title", re.compile(r"Round trip \d+ ms; \d+ frames? skipped"))
+    expect(contact).to_have_attribute(
+        "title", re.compile(r"Round trip \d+ ms; \d+ frames? skipped")
+    )

@@ -212,7 +212,8 @@ def test_a_phone_shows_stop_wherever_one_scrolls_and_never_scrolls_sideways(
 
 
 def test_buttons_and_inputs_are_large_enough_for_a_thumb(phone: Page) -> None:
-    script = """() => [...document.querySelectorAll("button, select, input[type=range], label, .row")]
+    targets = "button, select, input[type=range], label, .row"
+    script = f"""() => [...document.querySelectorAll("{targets}")]
         .filter((node) => node.checkVisibility() && node.getBoundingClientRect().height < 44)
         .map((node) => node.outerHTML)"""
     for tab in ("Status", "Parts", "Signals"):

@@ -9,8 +9,8 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.station import Complaints, Service
 from tests.browser.states import drive
+from tests.browser.station import Complaints, Service
 from tests.browser.test_operator import BROKEN_WORDS
 
 pytestmark = pytest.mark.browser
@@ -28,15 +28,16 @@ TABS = ("Status", "Map", "Parts", "Signals", "Log")
 BELOW_STOP = """() => {
     const stop = document.querySelector("button.stop").getBoundingClientRect();
     const controls = document.querySelectorAll(
-        "header button, .bands :is(button, input), main :is(button, input, select, a[href], [role=treeitem], summary), .tabs button");
+        ":is(header, .bands, main, .tabs) :is(button, input, select, a, [role=treeitem], summary)");
     const covered = [];
     for (const control of controls) {
         if (!control.checkVisibility() || control.closest(".stop, .visually-hidden")) continue;
         control.scrollIntoView({ block: "center" });
         const box = control.getBoundingClientRect();
         if (!box.width || !box.height) continue;
-        const apart = box.right <= stop.left || box.left >= stop.right || box.bottom <= stop.top || box.top >= stop.bottom;
-        if (!apart) covered.push(control.outerHTML.slice(0, 120));
+        const isBeside = box.right <= stop.left || box.left >= stop.right;
+        const isApart = isBeside || box.bottom <= stop.top || box.top >= stop.bottom;
+        if (!isApart) covered.push(control.outerHTML.slice(0, 120));
     }
     return covered;
 }"""
@@ -44,7 +45,8 @@ BELOW_STOP = """() => {
 
 CUT_OFF = """() => [...document.querySelectorAll("header, .bands, main, .tabs")]
     .map((node) => [node.className || node.tagName, node.getBoundingClientRect()])
-    .filter(([, box]) => box.height && (box.left < 0 || box.right > innerWidth + .5 || box.bottom > innerHeight + .5))
+    .filter(([, box]) => box.height > 0)
+    .filter(([, { left, right, bottom }]) => left < 0 || right > innerWidth || bottom > innerHeight)
     .map(([name]) => name)"""
 
 
@@ -141,4 +143,6 @@ def test_a_phone_shows_first_what_somebody_has_to_do(phone: Page, service: Servi
     status = phone.locator("main")
     expect(status.get_by_role("button", name=re.compile("Pause|Resume"))).to_be_in_viewport()
     expect(status.get_by_role("button", name="Release gate (hold)")).to_be_visible()
-    expect(status.locator("#pending")).to_contain_text(re.compile(r"GPS accuracy.*GPS_LOST in 1\d s"))
+    expect(status.locator("#pending")).to_contain_text(
+        re.compile(r"GPS accuracy.*GPS_LOST in 1\d s")
+    )

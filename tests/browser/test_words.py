@@ -20,12 +20,12 @@ SEEN = """() => {
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     for (let node = walker.nextNode(); node; node = walker.nextNode()) {
         const parent = node.parentElement;
-        if (parent.closest("script, style, noscript, template") || !parent.checkVisibility()) continue;
+        if (parent.closest("script, style, noscript") || !parent.checkVisibility()) continue;
         if (node.data.trim()) said.push(node.data.trim());
     }
     for (const node of document.querySelectorAll("[title], [aria-label], [placeholder]"))
         for (const name of ["title", "aria-label", "placeholder"])
-            if (node.checkVisibility() && node.hasAttribute(name)) said.push(node.getAttribute(name));
+            if (node.checkVisibility()) said.push(node.getAttribute(name) ?? "");
     return [...new Set(said)];
 }"""
 OF_THE_INTERFACE = re.compile(

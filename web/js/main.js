@@ -92,7 +92,7 @@ function currentView() {
     roundTripMs: latency.roundTripMs,
     skipped: connection.skipped,
   };
-  selected ??= Object.values(state.parts).find((part) => part.kind === "system")?.name ?? null;
+  selected ??= outermost(state.parts);
   // A recording goes at a speed of its own.
   const serverNow = state.replay && state.at ? Date.parse(state.at) : clock.now();
   // Without contact nobody knows whether what began before still lasts.
@@ -120,6 +120,13 @@ function currentView() {
 async function loadPanels() {
   await import("/web/js/panels.js");
   pacer.ask(true);
+}
+
+/** Name of the first system that no other contains; null: none is known yet. */
+function outermost(parts) {
+  const all = Object.values(parts);
+  const owned = new Set(all.flatMap((part) => part.parts ?? []));
+  return all.find(({ kind, name }) => kind === "system" && !owned.has(name))?.name ?? null;
 }
 
 /** Request what no frame carries; after a failure it is requested again on reconnection. */

@@ -1,6 +1,6 @@
 /** Describes a rejected request, for any element that sends requests. */
 
-import { el } from "/web/js/base/dom.js";
+import { el, renderOnce, setAttribute } from "/web/js/base/dom.js";
 
 /** What fields of requests are called on the page. */
 const FIELDS = {
@@ -26,6 +26,12 @@ export function problemLines(problem) {
     ...more.map((message) => el("p", {}, message)),
     hint ? el("p", { class: "hint" }, `Hint: ${hint}`) : null,
   ].filter((line) => line !== null);
+}
+
+/** Show a problem in `node`, or nothing for null. */
+export function showProblem(node, problem) {
+  setAttribute(node, "hidden", !problem);
+  renderOnce(node, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
 }
 
 /** Only an answer that refuses says that nothing was done. */

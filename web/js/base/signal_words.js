@@ -57,6 +57,6 @@ export function ageWords({ received_at, stale, settings }, isLive, now) {
 /** A message with signals called by their labels, and modes as on the page. */
 export function plainMessage(message, signals) {
   return message.replace(/[\w/]+/g, (word) =>
-    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : modeName(word),
+    Object.hasOwn(signals, word) ? describe(word, signals[word]).label : modeName(word),
   );
 }

@@ -18,7 +18,8 @@ class HoldChips extends HTMLElement {
     this.every = el("ph-hold-list");
     this.all.append(el("h2", {}, "Holds"), this.every);
     this.count.addEventListener("click", () => this.all.togglePopover());
-    this.append(this.list, this.count);
+    this.problem = el("span", { class: "chip", role: "alert", "data-level": "attention", hidden: true });
+    this.append(this.problem, this.list, this.count);
     // Not within the header, whose ground and text have the colours of the level.
     document.body.append(this.all);
   }
@@ -31,6 +32,7 @@ class HoldChips extends HTMLElement {
     for (const [key, chip] of this.#chips) {
       if (first.has(key)) continue;
       chip.item.remove();
+      this.#complain("");
       this.#chips.delete(key);
     }
     // A chip stays as it is while only its reason changes, so that a press on it goes on.
@@ -54,17 +56,22 @@ class HoldChips extends HTMLElement {
     const release = el("ph-hold-button", { label: `Release ${hold.owner} (hold)`, short: "Release" });
     release.addEventListener("ph-held", ({ detail }) =>
       whileSending(release.button, async () => {
-        const problem = await releaseHold(hold.owner, detail.volatile);
-        if (problem) setText(why, problem);
+        this.#complain(await releaseHold(hold.owner, detail.volatile));
       }),
     );
     item.append(release);
     return { item, why, release };
   }
 
+  #complain(text) {
+    setText(this.problem, text);
+    setAttribute(this.problem, "title", text);
+    setAttribute(this.problem, "hidden", text === "");
+  }
+
   #draw({ item, why, release }, hold, { enabled, knownAt, volatile }) {
     const since = `for ${wholeSeconds(knownAt - Date.parse(hold.since_at))}`;
-    if (!release.button.hasAttribute("data-sending")) setText(why, hold.reason || since);
+    setText(why, hold.reason || since);
     setAttribute(item, "title", [hold.owner, hold.reason, since, whoseWords(hold)].filter(Boolean).join(", "));
     release.disabled = !enabled;
     release.volatile = volatile;

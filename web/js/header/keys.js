@@ -37,6 +37,8 @@ export function setPlainKeys(isOn) {
 
 /** Listen for keys and for the skip links. */
 export function listen() {
+  // Before any element that takes Escape for itself.
+  window.addEventListener("keydown", hearStop, { capture: true });
   document.addEventListener("keydown", hear);
   document.querySelector(".skip").addEventListener("click", (event) => {
     event.preventDefault();
@@ -55,12 +57,14 @@ export function goTo(name) {
   target.focus();
 }
 
+function hearStop(event) {
+  if (event.key !== "Escape" || !event.shiftKey) return;
+  event.preventDefault();
+  event.stopPropagation();
+  document.querySelector("ph-stop-button").engage();
+}
+
 function hear(event) {
-  if (event.key === "Escape" && event.shiftKey) {
-    event.preventDefault();
-    document.querySelector("ph-stop-button").engage();
-    return;
-  }
   const isPlain = !event.ctrlKey && !event.altKey && !event.metaKey;
   if (event.defaultPrevented || !isPlain || isTyping(event.target)) return;
   if (event.key === "Escape" && document.body.hasAttribute("data-moment")) tell("ph-moment", null);

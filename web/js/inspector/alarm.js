@@ -6,10 +6,12 @@
 import { partPath, request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { errorName, isOn, isWaiting, mayGoOn, worseBelow } from "/web/js/base/error_groups.js";
+import { showProblem } from "/web/js/base/problem.js";
 import { isSame } from "/web/js/base/same.js";
 import { plainMessage } from "/web/js/base/signal_words.js";
 import { whileSending } from "/web/js/base/sending.js";
 import "/web/js/base/sparkline.js";
+import { timeAndDay } from "/web/js/base/words.js";
 import {
   ageWords,
   factsOf,
@@ -19,8 +21,11 @@ import {
   tagsOf,
 } from "/web/js/inspector/error_words.js";
 import { consequence, showShape } from "/web/js/inspector/severity.js";
+import { splitName } from "/web/js/parts/lines.js";
 
 const BELOW_SHOWN = 20;
+/** Names that are longer are above in the title, and not on the button again. */
+const LONG = 24;
 
 class Alarm extends HTMLElement {
   #shown = null;
@@ -50,7 +55,7 @@ class Alarm extends HTMLElement {
       ),
     );
     this.details.addEventListener("toggle", () => this.#fillBody());
-    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
+    this.problem = el("div", { class: "problem", role: "alert", hidden: true });
     this.append(this.details, this.problem);
   }
 
@@ -62,6 +67,7 @@ class Alarm extends HTMLElement {
   show({ error, below, view }) {
     const { state, enabled, knownAt, volatile } = view;
     setText(this.age, ageWords(error, knownAt));
+    setAttribute(this.age, "title", error.since_at ? `since ${timeAndDay(error.since_at)}` : null);
     if (error !== this.#shown?.error) this.#signal = signalOf(error, state.signals);
     const signal = this.#signal;
     if (signal && isOn(error)) this.spark.show(signal, view);
@@ -83,7 +89,7 @@ class Alarm extends HTMLElement {
     showShape(this.shape, severity, isOn(error));
     setAttribute(this.details.firstChild, "title", errorName(error));
     setText(this.name, error.error);
-    setText(this.owner, part === null ? "" : ` of ${part}`);
+    renderOnce(this.owner, String(part), () => (part === null ? [] : namedParts(part)));
     renderOnce(this.tags, tagsOf(error).join(), () => tagsOf(error).map((tag) => el("span", { class: "tag" }, tag)));
     setText(this.message, plainMessage(error.message, signals));
   }
@@ -94,7 +100,7 @@ class Alarm extends HTMLElement {
     if (!this.body) this.#buildBody();
     const { error, below, view, signal } = this.#shown;
     const worse = worseBelow(error, below);
-    setText(this.meaning, consequence(worse ?? error) + (worse ? `, by ${errorName(worse)}` : ""));
+    setText(this.meaning, consequence(worse ?? error) + (worse ? ` (${errorName(worse)})` : ""));
     setText(this.measure, measured(error, signal));
     setText(this.facts, factsOf(error));
     const hint = hintOf(error);
@@ -160,7 +166,7 @@ class Alarm extends HTMLElement {
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
     setAttribute(this.link, "hidden", part === null);
-    if (part !== null) setText(this.link, `Show ${part}`);
+    if (part !== null) setText(this.link, `Show ${part.length > LONG ? "the part" : part}`);
     setAttribute(this.moment, "hidden", !since);
     if (until !== null) this.form?.close();
     if (this.form) this.form.enabled = enabled;
@@ -188,20 +194,26 @@ class Alarm extends HTMLElement {
 
   #send(button, method, what, body) {
     return whileSending(button, async () => {
-      let said = "";
+      let problem = null;
       try {
         await request(method, this.#path + what, body);
-      } catch ({ message }) {
-        said = `Not done: ${message}`;
+      } catch (error) {
+        if (!error.problem) throw error;
+        problem = error.problem;
       }
-      setText(this.problem, said);
-      setAttribute(this.problem, "hidden", said === "");
+      showProblem(this.problem, problem);
     });
   }
 
   #tell(name, detail) {
     this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
   }
+}
+
+/** "of front_left_whe…vation": the end of a long name tells it from others. */
+function namedParts(part) {
+  const [start, end] = splitName(part);
+  return [el("span", {}, `of ${start}`), el("span", { class: "end" }, end)];
 }
 
 customElements.define("ph-alarm", Alarm);

@@ -5,7 +5,7 @@
 
 import { request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
-import { problemLines } from "/web/js/base/problem.js";
+import { showProblem } from "/web/js/base/problem.js";
 import { whileSending } from "/web/js/base/sending.js";
 import { areMany, notableSteps, progressWords, stepLists } from "/web/js/base/step_list.js";
 import { changeWords, isOpen, requestWords, timeOfDay, wholeSeconds } from "/web/js/base/words.js";
@@ -36,8 +36,7 @@ class Change extends HTMLElement {
   }
 
   show({ part, change, problem, enabled, knownAt }) {
-    setAttribute(this.problem, "hidden", !problem);
-    renderOnce(this.problem, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
+    showProblem(this.problem, problem);
     const isShown = change && !this.#dismissed.has(nameOf(change));
     setAttribute(this.result, "hidden", !isShown);
     if (!isShown) return;

@@ -1,7 +1,7 @@
 /** Texts on errors: pure functions. */
 
 import { isOn } from "/web/js/base/error_groups.js";
-import { describe } from "/web/js/base/signal_catalog.js";
+import { valueText } from "/web/js/base/signal_catalog.js";
 import { duration, timeAndDay, wholeSeconds } from "/web/js/base/words.js";
 
 /** Name of the signal that an error is of; undefined: of none. */
@@ -17,8 +17,7 @@ export function signalOf({ error, part, message }, signals) {
 export function measured({ value, threshold, message }, signal) {
   if (typeof value !== "number" || typeof threshold !== "number") return "";
   if (signal && message.includes(" is ")) return "";
-  const show = describe(signal?.signal ?? "", signal ?? {}).show;
-  const [said, limit] = [value, threshold].map((number) => show(number).filter(Boolean).join(" "));
+  const [said, limit] = [value, threshold].map((number) => valueText(signal?.signal, signal ?? {}, number));
   return `${said}, limit ${limit}`;
 }
 
@@ -40,7 +39,8 @@ export function tagsOf({ state, first_out, chattering, suppressed, shelved_until
   ].filter(Boolean);
 }
 
-const STATES = { latched: "latched", acknowledged: "acknowledged", returned: "returned" };
+/** What returned is under a heading that says so. */
+const STATES = { latched: "latched", acknowledged: "acknowledged" };
 
 /** What the tags mean for whoever reads them, and how often it happened. */
 export function factsOf(error) {

@@ -5,6 +5,7 @@
 
 import { partPath, request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
+import { showProblem } from "/web/js/base/problem.js";
 import { reasonTree } from "/web/js/base/reasons.js";
 import { isSame } from "/web/js/base/same.js";
 import { whileSending } from "/web/js/base/sending.js";
@@ -34,7 +35,7 @@ class Reaction extends HTMLElement {
     this.head = el("summary", {}, el("span", { class: "reaction-head" }, this.name, this.state, this.does), this.waits);
     this.reasons = el("div");
     this.buttons = this.#makeButtons();
-    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
+    this.problem = el("div", { class: "problem", role: "alert", hidden: true });
     this.details = el("details", { class: "unfold" }, this.head, this.reasons, this.buttons, this.problem);
     this.details.addEventListener("toggle", () => this.#fillWhy());
     this.append(this.details);
@@ -93,7 +94,7 @@ class Reaction extends HTMLElement {
 
   #arm() {
     const arm = this.arm.value;
-    return this.#send(this.set, "Not armed", async () => {
+    return this.#send(this.set, async () => {
       await request("PATCH", this.path, { arm, reason: "set on the page" });
       this.#isChosen = false;
     });
@@ -101,21 +102,21 @@ class Reaction extends HTMLElement {
 
   #acknowledge(volatile) {
     const path = `${this.path}/acknowledge`;
-    return this.#send(this.seen, "Not acknowledged", () =>
+    return this.#send(this.seen, () =>
       request("POST", volatile ? `${path}?volatile=true` : path),
     );
   }
 
-  #send({ button }, failed, act) {
+  #send({ button }, act) {
     return whileSending(button, async () => {
-      let said = "";
+      let problem = null;
       try {
         await act();
-      } catch ({ message }) {
-        said = `${failed}: ${message}`;
+      } catch (error) {
+        if (!error.problem) throw error;
+        problem = error.problem;
       }
-      setText(this.problem, said);
-      setAttribute(this.problem, "hidden", said === "");
+      showProblem(this.problem, problem);
     });
   }
 }

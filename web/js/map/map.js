@@ -76,7 +76,7 @@ class TrackMap extends HTMLElement {
     this.#trail.add(vehicle.pose, Date.parse(vehicle.at), trailState(systemState, task));
   }
 
-  update({ state, live, moment, contact, preview, serverNow }) {
+  update({ state, live, moment, contact, preview }) {
     const path = this.#pathOf(state, live);
     const inputs = [state.vehicle, state.task, state.holds, path, preview, moment, contact.level];
     inputs.push(this.#trail.version, devicePixelRatio);
@@ -84,7 +84,7 @@ class TrackMap extends HTMLElement {
       this.#seen = inputs;
       this.#show(state, path, preview, moment, poseAge(state, contact));
     }
-    this.#speak(state, contact, serverNow);
+    this.#speak(state, contact);
   }
 
   #show(state, path, preview, moment, age) {
@@ -226,12 +226,13 @@ class TrackMap extends HTMLElement {
   }
 
   /** Tell those who do not see the map, at most once a second. */
-  #speak(state, contact, now) {
+  #speak(state, contact) {
+    const now = performance.now();
     if (this.#isSpoken || now - this.#spokenAt < SPOKEN_MS) return;
     this.#isSpoken = true;
     this.#spokenAt = now;
-    const age = poseAge(state, contact);
-    setText(this.words, `${mapSentence(state, age)} ${viewSentence(this.#view)}`);
+    const seen = this.#view.width > 0 ? ` ${viewSentence(this.#view)}` : "";
+    setText(this.words, mapSentence(state, poseAge(state, contact)) + seen);
   }
 
   #resize() {

@@ -32,6 +32,7 @@ export class Chart {
     this.plot = el("div", { class: "chart-plot", "aria-hidden": "true" }, this.svg, this.labels);
     this.plot.addEventListener("pointermove", (event) => this.#tell(event));
     this.plot.addEventListener("pointerleave", () => setText(this.readout, ""));
+    this.plot.addEventListener("click", (event) => showMoment(this.plot, this.#timeAt(event)));
     const axis = el("div", { class: "chart-axis" }, this.begin, this.readout, this.end);
     this.node = el("div", { class: "chart" }, this.plot, axis);
   }
@@ -75,13 +76,22 @@ export class Chart {
     this.labels.replaceChildren(...labels);
   }
 
-  #tell({ clientX }) {
+  #timeAt({ clientX }) {
     const { left, width } = this.plot.getBoundingClientRect();
-    const at = this.from + ((clientX - left) / width) * (this.to - this.from);
+    return this.from + ((clientX - left) / width) * (this.to - this.from);
+  }
+
+  #tell(event) {
+    const at = this.#timeAt(event);
     const distance = (point) => Math.abs(point.at - at);
     const near = this.points.reduce((best, p) => (best && distance(best) <= distance(p) ? best : p), null);
     setText(this.readout, near ? `${timeOfDay(near.at)}  ${this.words(near.mid)}` : "");
   }
+}
+
+/** Let all panels show a time in ms. */
+export function showMoment(node, at) {
+  node.dispatchEvent(new CustomEvent("ph-show-moment", { bubbles: true, detail: { at } }));
 }
 
 /** Least and greatest value that are to be seen, the threshold among them. */

@@ -5,7 +5,7 @@ import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { detailWords } from "/web/js/base/problem.js";
 import { valueText } from "/web/js/base/signal_catalog.js";
 import { timeOfDay } from "/web/js/base/words.js";
-import { Chart } from "/web/js/signals/chart.js";
+import { Chart, showMoment } from "/web/js/signals/chart.js";
 import { factsOf, limitOf, noteOf } from "/web/js/signals/signal_facts.js";
 
 const MINUTE_MS = 60_000;
@@ -42,6 +42,8 @@ class SignalDetail extends HTMLElement {
   #span = 10;
   #askedAt = -Infinity;
   #asked = 0;
+  /** The moment whose history is shown, in ms; null: now; undefined: none yet. */
+  #shownAt = undefined;
 
   open(name, label) {
     this.name = name;
@@ -76,15 +78,15 @@ class SignalDetail extends HTMLElement {
     );
     const pause = Math.max(LEAST_PAUSE_MS, (this.#span * MINUTE_MS) / POINTS);
     if (view.live.replay) setText(this.summary, "A recording has no history.");
-    const isDue = performance.now() - this.#askedAt > pause;
+    const at = view.moment?.at ?? null;
+    const isOld = at === null && performance.now() - this.#askedAt > pause;
     const isAnswered = view.contact.level !== "lost" && !view.live.replay;
-    if (isDue && isAnswered && (!view.moment || view.moment.at !== this.shownAt)) this.#load();
+    if (isAnswered && (isOld || at !== this.#shownAt)) this.#load(at);
   }
 
   #choose(minutes) {
     this.#span = minutes;
-    this.#askedAt = -Infinity;
-    this.shownAt = null;
+    this.#shownAt = undefined;
     SPANS.forEach(([, own], index) => setAttribute(this.spans[index], "aria-pressed", String(own === minutes)));
     if (this.view) this.show(this.view);
   }
@@ -94,9 +96,9 @@ class SignalDetail extends HTMLElement {
     this.monitor = answer.items.find(({ signal }) => signal === this.name) ?? null;
   }
 
-  async #load() {
+  async #load(at) {
     this.#askedAt = performance.now();
-    this.shownAt = this.view.moment?.at ?? null;
+    this.#shownAt = at;
     const to = this.view.serverNow;
     const from = to - this.#span * MINUTE_MS;
     const asked = ++this.#asked;
@@ -150,7 +152,7 @@ class SignalDetail extends HTMLElement {
         .map((point, index) => [point, items[index]])
         .filter((_, index) => index % each === 0)
         .map(([{ low, high, mid }, { at, error }]) =>
-          el("tr", {}, ...[timeOfDay(at), ...[low, high, mid].map((v) => this.#words(v)), error ?? ""].map(cell)),
+          el("tr", {}, timeCell(at), ...[low, high, mid].map((v) => cell(this.#words(v))), cell(error ?? "")),
         ),
     );
   }
@@ -160,6 +162,12 @@ class SignalDetail extends HTMLElement {
 function held(points, to, gap) {
   const last = points.at(-1);
   return last && to - last.at < gap ? [...points, { ...last, at: to }] : points;
+}
+
+function timeCell(at) {
+  const show = ({ target }) => showMoment(target, Date.parse(at));
+  const title = `Show ${timeOfDay(at)} in all panels`;
+  return el("td", {}, el("button", { title, onclick: show }, timeOfDay(at)));
 }
 
 function cell(text) {

@@ -1,4 +1,4 @@
-/** <ph-signal-list>: all signals, urgent ones first; with `only="pending"` those alone.
+/** <ph-signal-list>: all signals, urgent ones first.
  *
  * A row is drawn only while it is seen. The order does not change under a pointer.
  */
@@ -22,7 +22,6 @@ class SignalList extends HTMLElement {
   #isUnderPointer = false;
 
   connectedCallback() {
-    this.only = this.getAttribute("only");
     this.count = el("span", { class: "quiet signal-count" });
     this.filter = el("input", {
       type: "search",
@@ -33,8 +32,7 @@ class SignalList extends HTMLElement {
     });
     this.head = el("div", { class: "signals-head" }, el("h2", {}, "Signals"), this.count, this.filter);
     this.empty = el("p", { class: "quiet" }, "Not known yet.");
-    this.list = el("div", { role: "list", "aria-label": this.only ? "Pending" : "Signals" });
-    setAttribute(this.head, "hidden", Boolean(this.only));
+    this.list = el("div", { role: "list", "aria-label": "Signals" });
     this.append(this.head, this.list, this.empty);
     this.list.addEventListener("pointerenter", () => (this.#isUnderPointer = true));
     this.list.addEventListener("pointerleave", () => (this.#isUnderPointer = false));
@@ -108,8 +106,7 @@ class SignalList extends HTMLElement {
     this.#sift();
   }
 
-  #fits({ name, label, rank: own }) {
-    if (this.only) return own === 1;
+  #fits({ name, label }) {
     const wanted = this.filter.value.trim().toLowerCase();
     return `${name} ${label}`.toLowerCase().includes(wanted);
   }
@@ -128,7 +125,7 @@ class SignalList extends HTMLElement {
     setText(this.count, countWords(rows, shown));
     const isFirst = this.list.querySelector("[tabindex='0']")?.checkVisibility();
     if (!isFirst) this.#setTabStop(rows.find((row) => !row.hidden));
-    setAttribute(this.empty, "hidden", shown > 0 || Boolean(this.only));
+    setAttribute(this.empty, "hidden", shown > 0);
     const wanted = this.filter.value.trim();
     setText(this.empty, wanted ? `No signal is called “${wanted}”.` : "This robot has no signals.");
   }

@@ -299,9 +299,14 @@ class TaskForm extends HTMLElement {
     });
     return [
       el("h3", {}, "Preview"),
-      el("ul", {}, ...lines.map((line) => el("li", {}, line)), ...warnings),
+      el("ul", {}, ...lines.map((line) => el("li", {}, withUnits(line))), ...warnings),
     ];
   }
+}
+
+/** No line ends between a number and its unit. */
+function withUnits(line) {
+  return line.replace(/(\d) (?=(m|s|min)\b)/g, "$1\u00a0");
 }
 
 function primary(act) {

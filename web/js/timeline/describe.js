@@ -40,12 +40,20 @@ export function markWords(lane, items, now) {
   return { title: `${items.length} in ${lane.name.toLowerCase()}`, lines: [times, ...named] };
 }
 
+/** What a lane has at a moment: what ends with it is over, as in the frame of that moment. */
+export function itemsAt({ intervals }, at) {
+  return intervals.filter((one) => isIn(one, at));
+}
+
+function isIn({ begin, end }, at) {
+  return begin <= at && (at < end || begin === at);
+}
+
 /** What a lane says of a moment, where no mark is. */
 export function momentWords(lane, at) {
-  const isIn = ({ begin, end }) => begin <= at && at <= end;
-  const gap = lane.unknown.find(isIn);
+  const gap = lane.unknown.find((one) => isIn(one, at));
   if (gap) return gap.text;
-  const found = lane.intervals.filter(isIn).map(({ text }) => text);
+  const found = itemsAt(lane, at).map(({ text }) => text);
   return found.length ? found.join("; ") : NOTHING[lane.key] ?? "not known";
 }
 

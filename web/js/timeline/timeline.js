@@ -6,6 +6,7 @@ import { timeAndDay } from "/web/js/base/words.js";
 import { chosenParts, loadKept, storeKept } from "/web/js/timeline/chosen_parts.js";
 import { EventRecord, MOST_EVENTS } from "/web/js/timeline/event_record.js";
 import "/web/js/timeline/event_list.js";
+import { itemsAt } from "/web/js/timeline/describe.js";
 import { exportEvents } from "/web/js/timeline/export.js";
 import { listen } from "/web/js/timeline/gestures.js";
 import { keysOf } from "/web/js/timeline/keys.js";
@@ -48,6 +49,7 @@ class Timeline extends HTMLElement {
   /** The moment that is asked for, ms; null: none. */
   #pending = null;
   #asked = null;
+  #problem = "";
 
   connectedCallback() {
     this.bar = new Toolbar({
@@ -211,7 +213,9 @@ class Timeline extends HTMLElement {
     const cut = this.#record.isCut ? `only the last ${MOST_EVENTS.toLocaleString("en-GB")} events` : "";
     this.bar.show({ ...state, cut, pinned: at ? timeAndDay(at) : "" });
     setAttribute(this, "data-pinned", Boolean(at));
-    if (this.#record.problem) this.#tell(`Earlier events are not shown: ${this.#record.problem}`);
+    const { problem } = this.#record;
+    if (problem !== this.#problem) this.#tell(problem && `Earlier events are not shown: ${problem}`);
+    this.#problem = problem;
   }
 
   #drawTable(now) {
@@ -280,7 +284,7 @@ class Timeline extends HTMLElement {
 
   /** The lane that the keys are on, while they are. */
   #focusedLane() {
-    return document.activeElement === this.lanes.canvas ? this.#lane : null;
+    return this.lanes.canvas.matches(":focus-visible") ? this.#lane : null;
   }
 
   #cursorX() {
@@ -301,7 +305,8 @@ class Timeline extends HTMLElement {
     const y = this.lanes.middleOf(this.#lane);
     const x = this.#cursorX();
     const box = this.lanes.canvas.getBoundingClientRect();
-    const found = { ...this.lanes.at(x, y), at, lane };
+    const items = lane ? itemsAt(lane, at).filter(({ tone }) => tone !== "none") : [];
+    const found = { at, lane, items };
     this.tip.show(found, this.#dark, this.#now(), box.left + x, box.top + y);
     this.#speak(this.#now());
   }
@@ -371,6 +376,7 @@ class Timeline extends HTMLElement {
     const time = typeof at === "number" ? at : Date.parse(at);
     if (!Number.isFinite(time) || !this.#view) return;
     this.#show("timeline");
+    this.dispatchEvent(new CustomEvent("ph-tab", { bubbles: true, detail: "log" }));
     this.#pin(time);
   }
 
