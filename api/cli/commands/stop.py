@@ -52,7 +52,9 @@ exit code: 0 the stop is engaged, whether or not the vehicle stands still yet;
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
-    parser.usage = "pilothouse stop [REASON ...] [--url URL] [--retry S] [--wait S] [--format F]"
+    parser.usage = """\
+pilothouse stop [REASON ...] [--url URL] [--retry S] [--wait S]
+                       [--format FORMAT]"""
     parser.add_argument("reason", metavar="REASON", nargs="*", help="why; any number of words")
     add_url(parser, is_needed=False)
     # A value that is none does not keep the vehicle from being stopped.
@@ -74,7 +76,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--format",
-        metavar="F",
+        metavar="FORMAT",
         nargs="?",
         default="text",
         help="text (default) or json: {delivered, tries, took_s, standstill, speed_mps,"
