@@ -8,6 +8,7 @@ import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from http import HTTPStatus
 from typing import TYPE_CHECKING
 
 from api.cli.commands.command import Command, add_url, default_url, say_json
@@ -170,8 +171,10 @@ def stop(options: StopOptions, address: "Address", ask: Callable[..., "Answer"])
 def _say_undelivered(delivery: "Delivery", options: StopOptions, address: "Address") -> int:
     """Say that a stop was not delivered, and what to do; return the exit code."""
     if delivery.answer is not None:
-        hint = token_hint(given=address.token is not None)
-        for line in refusal_lines({"hint": hint, **delivery.answer.body}):
+        problem = dict(delivery.answer.body)
+        if delivery.answer.status == HTTPStatus.UNAUTHORIZED:
+            problem["hint"] = token_hint(given=address.token is not None)
+        for line in refusal_lines(problem):
             complain(line)
     is_open = delivery.is_open and delivery.answer is None
     complain(_NOT_KNOWN if is_open else _NOT_DELIVERED)

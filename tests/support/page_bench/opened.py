@@ -99,7 +99,10 @@ def opened(url: str) -> Iterator[OpenedPage]:
         page = browser.new_page(viewport={"width": 1440, "height": 900})
         page.add_init_script(_WATCH)
         frames: list[object] = []
-        page.on("websocket", lambda socket: socket.on("framereceived", frames.append))
+        page.on(
+            "websocket",
+            lambda socket: socket.on("framereceived", lambda frame: frames.append(frame)),
+        )
         page.goto(url, wait_until="commit")
         devtools = page.context.new_cdp_session(page)
         devtools.send("Performance.enable")
