@@ -114,13 +114,20 @@ async def prepare(app: FastAPI) -> None:
     The larger document is made in a forked process: as objects it takes 4 MB for as long as the
     service runs, and as text a tenth of that.
     """
-    try:
-        encoded = await forked_call(partial(encode_description, app))
-    except (OSError, ForkedCallError):
-        encoded = encode_description(app)
-    keep_description(app, encoded)
+    async with asyncio.TaskGroup() as preparing:
+        described = preparing.create_task(_described(app))
+        # It is forked now, before there is a thread that it would have half of.
+        await asyncio.sleep(0)
+        preparing.create_task(asyncio.to_thread(assembled_page))
+    keep_description(app, described.result())
     stream_document()
-    await asyncio.to_thread(assembled_page)
+
+
+async def _described(app: FastAPI) -> bytes:
+    try:
+        return await forked_call(partial(encode_description, app))
+    except (OSError, ForkedCallError):
+        return encode_description(app)
 
 
 @asynccontextmanager

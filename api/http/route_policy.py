@@ -18,7 +18,8 @@ class Permission(Enum):
     """The permission that a client needs for a route."""
 
     READ_PUBLIC = auto()
-    """Read what is the same for every robot: the page and the documents. Needs no token."""
+    """Read what is the same for every robot: the page and the documents. Needs no token. Where no
+    token is set, the page holds the newest frame as well."""
     PROBE = auto()
     """Liveness and readiness probes of a service manager. Needs no token; never limited."""
     OBSERVE = auto()

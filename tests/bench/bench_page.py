@@ -105,7 +105,7 @@ def test_what_drawing_costs(tmp_path: Path) -> None:
         "What drawing the page costs",
         f"CPU of the renderer and of the GPU process of a headless Chromium at 1440 by 900, over "
         f"{SECONDS:g} s, as the share of a core. Changing: a stand-in for the service tells 5 % of "
-        "the parts and of the signals anew every 50 ms.",
+        "the parts and of the signals anew every 50 ms. `frames` are those that arrived.",
         rows,
         asked="at rest at most 6 %, driving at most 25 %, changing at most 50 %.",
         notes=NOTES,
@@ -170,7 +170,7 @@ def _settled_cost(page: OpenedPage, begin: Callable[[], None]) -> Row:
     page.drawn_s()
     begin()
     page.page.wait_for_timeout(1000 * SETTLE_S)
-    return {"CPU_percent": round(page.cpu_percent(SECONDS), 1)}
+    return page.cost(SECONDS)
 
 
 @contextmanager

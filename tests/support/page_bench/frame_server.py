@@ -9,6 +9,7 @@ import asyncio
 import json
 import random
 import sys
+from datetime import UTC, datetime
 from typing import Any
 
 import websockets
@@ -63,13 +64,14 @@ class ChangingRobot:
 async def take_beginning(url: str) -> ChangingRobot:
     """Return a robot that begins as the one that is streamed at `url`."""
     async with websockets.connect(url, max_size=None) as stream:
-        hello, complete = json.loads(await stream.recv()), json.loads(await stream.recv())
+        hello = json.loads(await stream.recv())
+        complete: dict[str, Any] = {}
+        while "parts" not in complete:
+            complete = json.loads(await stream.recv())
     return ChangingRobot(hello, complete)
 
 
 async def _main(port: int) -> None:
-    from datetime import UTC, datetime
-
     robot = await take_beginning(f"ws://127.0.0.1:{port}/ws")
 
     def now() -> str:

@@ -50,6 +50,8 @@ class OpenedPage:
     devtools: CDPSession
     drawing: tuple[psutil.Process, ...]
     """The renderer and the GPU process."""
+    frames: list[object]
+    """What has come over the stream."""
 
     def usable_s(self) -> float:
         """Return how long after the navigation the state was shown and STOP could be pressed."""
@@ -67,11 +69,16 @@ class OpenedPage:
         """Press a button, and return how long it took until that could be seen."""
         return float(self.page.evaluate(_HEARD_MS, selector)) / 1000
 
-    def cpu_percent(self, seconds: float) -> float:
-        """Return what drawing takes from now on, as the share of a core."""
+    def cost(self, seconds: float) -> dict[str, float]:
+        """Return what drawing takes from now on, as the share of a core, and of how many frames."""
+        self.frames.clear()
         begin, before = time.perf_counter(), self._cpu_s()
         self.page.wait_for_timeout(1000 * seconds)
-        return 100 * (self._cpu_s() - before) / (time.perf_counter() - begin)
+        used_s, passed_s = self._cpu_s() - before, time.perf_counter() - begin
+        return {
+            "CPU_percent": round(100 * used_s / passed_s, 1),
+            "frames_per_s": round(len(self.frames) / passed_s, 1),
+        }
 
     def heap_mb(self) -> float:
         """Return the memory of scripts that is still in use."""
@@ -91,10 +98,15 @@ def opened(url: str) -> Iterator[OpenedPage]:
     with sync_playwright() as playwright, _browser(playwright) as browser:
         page = browser.new_page(viewport={"width": 1440, "height": 900})
         page.add_init_script(_WATCH)
+        frames: list[object] = []
+        page.on(
+            "websocket",
+            lambda socket: socket.on("framereceived", lambda frame: frames.append(frame)),
+        )
         page.goto(url, wait_until="commit")
         devtools = page.context.new_cdp_session(page)
         devtools.send("Performance.enable")
-        yield OpenedPage(page, devtools, tuple(_drawing()))
+        yield OpenedPage(page, devtools, tuple(_drawing()), frames)
 
 
 @contextmanager

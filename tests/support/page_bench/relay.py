@@ -6,7 +6,8 @@ delays whatever is sent. Opening a connection takes a round trip, too.
 
 import asyncio
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 
 _CHUNK = 65_536
@@ -69,12 +70,21 @@ class Relay:
 @contextmanager
 def relayed(relay: Relay) -> Iterator[str]:
     """Let a relay run in a thread, and give its address."""
-    loop = asyncio.new_event_loop()
-    thread = threading.Thread(target=loop.run_forever, daemon=True)
+    listening: Future[tuple[int, Callable[[], object]]] = Future()
+
+    async def run() -> None:
+        loop, end = asyncio.get_running_loop(), asyncio.Event()
+        server = await relay.serve()
+        port = server.sockets[0].getsockname()[1]
+        listening.set_result((port, lambda: loop.call_soon_threadsafe(end.set)))
+        await end.wait()
+        server.close()
+
+    thread = threading.Thread(target=lambda: asyncio.run(run()), daemon=True)
     thread.start()
+    port, end = listening.result()
     try:
-        server = asyncio.run_coroutine_threadsafe(relay.serve(), loop).result()
-        yield f"http://127.0.0.1:{server.sockets[0].getsockname()[1]}"
+        yield f"http://127.0.0.1:{port}"
     finally:
-        loop.call_soon_threadsafe(loop.stop)
+        end()
         thread.join()
