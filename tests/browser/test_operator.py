@@ -176,18 +176,20 @@ def test_the_errors_of_the_selected_part_are_listed_with_their_times(
     browser: Browser, troubled: Service
 ) -> None:
     page = opened(browser, troubled, 1280, 800)
-    page.locator("ph-part-tree").get_by_text("manipulator", exact=True).click()
+    page.get_by_role("treeitem", name=re.compile("^manipulator ")).click()
     errors = page.get_by_role("list", name="Errors of this part").get_by_role("listitem")
     expect(errors.first).to_have_text(
         re.compile(r"^⚠ UNREACHABLE for \d.* manipulator was never heard of$"), timeout=15_000
     )
-    page.locator("ph-part-tree").get_by_text("drive_base", exact=True).click()
+    page.get_by_role("treeitem", name=re.compile("^drive_base ")).click()
     expect(page.locator("ph-error-list")).to_be_hidden()
     page.close()
 
 
 def test_a_signal_that_nobody_sends_is_not_ok(browser: Browser, troubled: Service) -> None:
     page = opened(browser, troubled, 1280, 800)
+    # Rows are brought up to date while they are in sight.
+    card(page, "Load").scroll_into_view_if_needed()
     expect(card(page, "Load")).to_contain_text("no data")
     expect(card(page, "Load")).to_contain_text("never received")
     troubled.request("POST", "/signals/load", {"value": 1800.123456789})

@@ -14,7 +14,7 @@ class HoldChips extends HTMLElement {
   connectedCallback() {
     this.list = el("ul", { class: "chips-holds", "aria-label": "Holds" });
     this.count = el("button", { type: "button", class: "chip held-count", "data-level": "attention", hidden: true });
-    this.all = el("div", { popover: "auto", class: "sheet" });
+    this.all = el("div", { popover: "auto", class: "sheet", role: "dialog", "aria-label": "Holds" });
     this.every = el("ph-hold-list");
     this.all.append(el("h2", {}, "Holds"), this.every);
     this.count.addEventListener("click", () => this.all.togglePopover());

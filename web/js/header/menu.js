@@ -8,7 +8,7 @@ class Menu extends HTMLElement {
   connectedCallback() {
     this.sheet = el(
       "div",
-      { popover: "auto", class: "sheet", id: "menu" },
+      { popover: "auto", class: "sheet", id: "menu", role: "dialog", "aria-label": "Menu" },
       this.#whatIf("menu-what-if"),
       el("h2", { id: "scheme-title" }, "Scheme"),
       schemeSwitch(),
