@@ -32,7 +32,7 @@ export PYTHONDONTWRITEBYTECODE :=
 # `make -j` runs one step after the other: tests that measure time do not share the machine, and two
 # installs do not share the environment.
 .NOTPARALLEL:
-.PHONY: help run hooks pre-commit test test-image test-ros2 lint types pyright imports pytest format docs bench bench-ros2 coverage mutation soak lowest lock clean
+.PHONY: help run hooks pre-commit test test-image test-ros2 lint types pyright imports pytest format docs pictures bench bench-ros2 coverage mutation soak lowest lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -89,6 +89,9 @@ format: $(INSTALLED_DEV) ## format with ruff, and apply its fixes
 docs: $(INSTALLED_DEV) ## regenerate OpenAPI, AsyncAPI and the pages of docs/reference from the code
 	@$(BIN)/python -m tests.support.document_examples
 	@$(BIN)/python -m docs.generate
+
+pictures: $(INSTALLED_DEV) ## renew the pictures of the page in docs/pictures; needs Chromium, takes 4 minutes
+	@$(BIN)/python -m tests.browser.pictures $(ARGS)
 
 bench: $(INSTALLED_DEV) ## run the benchmarks, with other software for comparison, and write docs/benchmarks.md
 	@$(if $(ARGS),,rm -f build/bench/*.json)

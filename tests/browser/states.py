@@ -1,14 +1,12 @@
 """Pictures of the page in each state of a robot, to be looked at.
 
 Run `python -m tests.browser.states FOLDER [NAME ...]`: for each state (or those named) four
-pictures, desktop and phone, light and dark. `python -m tests.browser.states --page FILE` renews
-the picture of the README.
+pictures, desktop and phone, light and dark. Those of the documents are made by `make pictures`.
 """
 
 import argparse
 import json
 import re
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -499,32 +497,14 @@ def shoot(browser: Browser, folder: Path, name: str, screen: str) -> None:
         page.close()
 
 
-def shoot_page(browser: Browser, file: Path) -> None:
-    """Take the picture of the README: the example robot on its loop."""
-    with running_robot("example") as service:
-        page = browser.new_page(viewport={"width": 1440, "height": 900})
-        page.goto(service.url)
-        post(service, "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
-        open_form(page)
-        page.get_by_role("button", name="Drive the example loop").click()
-        page.wait_for_timeout(100_000)
-        page.screenshot(path=file)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path, nargs="?")
+    parser.add_argument("folder", type=Path)
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(STATES))
-    parser.add_argument("--page", type=Path, metavar="FILE")
     arguments = parser.parse_args()
-    if (arguments.folder is None) == (arguments.page is None):
-        sys.exit("either a folder, or --page FILE")
     with sync_playwright() as playwright:
         chromium = playwright.chromium
         browser = chromium.launch(executable_path=str(CHROMIUM), args=CHROMIUM_ARGUMENTS)
-        if arguments.page:
-            shoot_page(browser, arguments.page)
-            return
         arguments.folder.mkdir(parents=True, exist_ok=True)
         for name in arguments.names or STATES:
             for screen in SCREENS:

@@ -96,6 +96,7 @@ def test_a_press_on_a_mode_that_cannot_be_entered_opens_why_not(
 
 
 def test_more_modes_than_fit_beside_each_other_are_a_list(desktop: Page) -> None:
+    expect(radio(desktop, "MODERATE")).to_be_visible()
     columns = desktop.evaluate(
         """() => [2, 3, 4, 5].map((count) => {
             const shown = document.createElement("ph-mode-switcher");

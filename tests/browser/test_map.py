@@ -191,20 +191,6 @@ def test_one_finger_moves_the_map_and_two_zoom_it(touch_phone: Page) -> None:
     assert touch_phone.evaluate("scrollY") == 0
 
 
-def test_an_empty_map_says_what_it_would_show_and_is_as_near_as_the_vehicle_needs(
-    desktop: Page, service: Service
-) -> None:
-    # The path of the last task stays until there is another one.
-    service.kill()
-    service.start()
-    desktop.reload()
-    hint = desktop.locator(".map-hint")
-    expect(hint).to_be_visible(timeout=10_000)
-    expect(hint).to_contain_text("The path of a task, its waypoints and the trail of the vehicle")
-    # Of a vehicle alone one sees more than a symbol.
-    assert shown_width_m(desktop) < 60
-
-
 def test_a_pinned_moment_shows_the_vehicle_and_the_trail_of_then(
     desktop: Page, service: Service, complaints: Complaints
 ) -> None:
@@ -224,6 +210,20 @@ def test_a_pinned_moment_shows_the_vehicle_and_the_trail_of_then(
     desktop.evaluate("document.dispatchEvent(new CustomEvent('ph-moment', { detail: null }))")
     expect(button(desktop, "Pause")).to_be_enabled()
     assert complaints.messages == []
+
+
+def test_an_empty_map_says_what_it_would_show_and_is_as_near_as_the_vehicle_needs(
+    desktop: Page, service: Service
+) -> None:
+    # The path of the last task stays until there is another one.
+    service.kill()
+    service.start()
+    desktop.reload()
+    hint = desktop.locator(".map-hint")
+    expect(hint).to_be_visible(timeout=10_000)
+    expect(hint).to_contain_text("The path of a task, its waypoints and the trail of the vehicle")
+    # Of a vehicle alone one sees more than a symbol.
+    assert shown_width_m(desktop) < 60
 
 
 def test_without_contact_the_map_says_of_when_it_is(desktop: Page, service: Service) -> None:

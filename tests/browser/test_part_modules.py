@@ -132,10 +132,10 @@ def test_the_cause_is_told_in_one_short_line(
 
 
 def test_where_a_system_is_unknown_the_node_that_hides_it_is_the_cause(page: Page) -> None:
-    hidden = system(
-        "motion", "left/brake", converged=False, deviation_reason="left/brake is unknown"
-    )
-    hidden["actual"] |= {"state": "unknown", "reason": "left/brake is unreachable"}
+    hidden = {
+        **system("motion", "left/brake", converged=False, deviation_reason="left/brake is unknown"),
+        "actual": {"state": "unknown", "reason": "left/brake is unreachable"},
+    }
     script = VERDICT + "return verdict.causeWords(given);"
     assert run(page, script, hidden) == "because brake is unreachable"
 

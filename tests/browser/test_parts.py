@@ -140,7 +140,7 @@ def test_what_needs_attention_stands_above_all_with_its_cause(page: Page) -> Non
 
 
 def test_systems_that_deviate_because_of_a_node_name_it_and_come_after_it(page: Page) -> None:
-    page.get_by_role("button", name="8 systems deviate because of these").click()
+    page.get_by_role("button", name="8 systems follow from these").click()
     expect(page.get_by_role("radio", name="Attention")).to_be_checked()
     expect(said(page)).to_have_text("12 of 334 shown")
     unit = urgent(page).filter(has_text="perception_unit_03")

@@ -13,6 +13,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.robots import large_robot
 from tests.browser.station import Complaints, Service, free_port
 
 if TYPE_CHECKING:
@@ -302,6 +303,46 @@ def test_the_time_of_an_event_in_the_log_shows_its_moment(page: Page, robot: Ser
     expect(page.get_by_role("tab", name="Timeline")).to_have_attribute("aria-selected", "true")
     expect(band(page)).to_be_visible(timeout=REPLAYED_MS)
     expect(shown_mode(page)).to_contain_text("MODERATE")
+
+
+def test_from_an_error_one_gets_to_the_moment_in_which_it_was_raised(
+    page: Page, robot: Service
+) -> None:
+    robot.request("PATCH", "/mock/battery_level", {"value": 0.3})
+    page.wait_for_timeout(1500)
+
+    page.get_by_role("button", name="Show on the timeline").first.click()
+
+    expect(note(page)).to_have_text(re.compile("Loading"), timeout=100)
+    expect(band(page)).to_be_visible(timeout=REPLAYED_MS)
+    robot.make_healthy()
+    expect(page.get_by_role("heading", level=1)).to_contain_text("IDLE")
+    expect(page.locator("ph-why")).to_contain_text("BATTERY_LOW")
+
+
+def test_a_lane_of_a_part_stays_when_it_is_kept(
+    browser: "Browser", tmp_path: Path, complaints: Complaints
+) -> None:
+    with (tmp_path / "output").open("w+b") as output:
+        service = Service(free_port(), output, large_robot(tmp_path))
+        service.start()
+        page = browser.new_page(viewport={"width": 1440, "height": 900})
+        complaints.watch(page)
+        page.goto(service.url)
+        names = page.locator(".lane-names")
+        page.get_by_role("searchbox").fill("node_042")
+        page.get_by_role("treeitem").filter(has_text="node_042").last.click()
+        names.get_by_role("button", name="Keep the lane of node_042").click()
+        page.get_by_role("searchbox").fill("node_050")
+        page.get_by_role("treeitem").filter(has_text="node_050").last.click()
+
+        expect(names.get_by_role("button", name="node_050", exact=True)).to_be_visible()
+        expect(names.get_by_role("button", name="node_042", exact=True)).to_be_visible()
+        names.get_by_role("button", name="Take the lane of node_042 away").click()
+        expect(names.get_by_role("button", name="node_042", exact=True)).to_have_count(0)
+        assert complaints.messages == []
+        page.close()
+        service.kill()
 
 
 def test_the_events_of_the_span_are_saved_as_json_lines(page: Page, robot: Service) -> None:

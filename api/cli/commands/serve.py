@@ -48,6 +48,22 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         choices=("simulated", "ros2"),
         help="how nodes are reached; default: as in the robot file, else simulated",
     )
+    _add_network(parser)
+    parser.add_argument(
+        "--mock-signals", action="store_true", help="publish mock values of the five signals"
+    )
+    parser.add_argument(
+        "--format",
+        default="text",
+        choices=("text", "json"),
+        help="of the greeting; json: {url, version, model, data, token_needed, simulated}",
+    )
+    parser.add_argument(
+        "--log-level", default="info", choices=("debug", "info", "warning", "error")
+    )
+
+
+def _add_network(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--host", default="127.0.0.1", help="address to listen on; default: %(default)s"
     )
@@ -56,9 +72,6 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--anonymous", action="store_true", help="allow everybody who can reach --host"
-    )
-    parser.add_argument(
-        "--mock-signals", action="store_true", help="publish mock values of the five signals"
     )
     parser.add_argument(
         "--allowed-host",
@@ -74,15 +87,6 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         metavar="ORIGIN",
         help="page of another origin, such as https://grafana.example, that may read and, with the "
         "token, write; can be repeated",
-    )
-    parser.add_argument(
-        "--format",
-        default="text",
-        choices=("text", "json"),
-        help="of the greeting; json: {url, version, model, data, token_needed, simulated}",
-    )
-    parser.add_argument(
-        "--log-level", default="info", choices=("debug", "info", "warning", "error")
     )
 
 

@@ -8,6 +8,7 @@ import argparse
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from http import HTTPStatus
 from typing import TYPE_CHECKING
 
 from api.cli.commands.command import Command, add_url, default_url, say_json
@@ -52,7 +53,9 @@ exit code: 0 the stop is engaged, whether or not the vehicle stands still yet;
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
-    parser.usage = "pilothouse stop [REASON ...] [--url URL] [--retry S] [--wait S] [--format F]"
+    parser.usage = """\
+pilothouse stop [REASON ...] [--url URL] [--retry S] [--wait S]
+                       [--format FORMAT]"""
     parser.add_argument("reason", metavar="REASON", nargs="*", help="why; any number of words")
     add_url(parser, is_needed=False)
     # A value that is none does not keep the vehicle from being stopped.
@@ -74,7 +77,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--format",
-        metavar="F",
+        metavar="FORMAT",
         nargs="?",
         default="text",
         help="text (default) or json: {delivered, tries, took_s, standstill, speed_mps,"
@@ -168,8 +171,10 @@ def stop(options: StopOptions, address: "Address", ask: Callable[..., "Answer"])
 def _say_undelivered(delivery: "Delivery", options: StopOptions, address: "Address") -> int:
     """Say that a stop was not delivered, and what to do; return the exit code."""
     if delivery.answer is not None:
-        hint = token_hint(given=address.token is not None)
-        for line in refusal_lines({"hint": hint, **delivery.answer.body}):
+        problem = dict(delivery.answer.body)
+        if delivery.answer.status == HTTPStatus.UNAUTHORIZED:
+            problem["hint"] = token_hint(given=address.token is not None)
+        for line in refusal_lines(problem):
             complain(line)
     is_open = delivery.is_open and delivery.answer is None
     complain(_NOT_KNOWN if is_open else _NOT_DELIVERED)

@@ -24,6 +24,8 @@ import { consequence, showShape } from "/web/js/inspector/severity.js";
 import { splitName } from "/web/js/parts/lines.js";
 
 const BELOW_SHOWN = 20;
+/** Names that are longer are above in the title, and not on the button again. */
+const LONG = 24;
 
 class Alarm extends HTMLElement {
   #shown = null;
@@ -164,7 +166,7 @@ class Alarm extends HTMLElement {
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
     setAttribute(this.link, "hidden", part === null);
-    if (part !== null) setText(this.link, `Show ${part}`);
+    if (part !== null) setText(this.link, `Show ${part.length > LONG ? "the part" : part}`);
     setAttribute(this.moment, "hidden", !since);
     if (until !== null) this.form?.close();
     if (this.form) this.form.enabled = enabled;

@@ -20,7 +20,7 @@ class AlarmList extends HTMLElement {
     if (this.on) return;
     this.on = group("Errors that are on");
     this.returned = group("Errors that are over, and not acknowledged");
-    this.over = el("h3", { hidden: true }, "Over, not acknowledged");
+    this.over = el("h3", { hidden: true }, "Returned: over, not acknowledged");
     this.silenced = group("Errors that are not announced");
     this.summary = el("summary");
     this.folded = el("details", { class: "unfold", hidden: true }, this.summary, this.silenced);

@@ -39,7 +39,8 @@ export function tagsOf({ state, first_out, chattering, suppressed, shelved_until
   ].filter(Boolean);
 }
 
-const STATES = { latched: "latched", acknowledged: "acknowledged", returned: "returned" };
+/** What returned is under a heading that says so. */
+const STATES = { latched: "latched", acknowledged: "acknowledged" };
 
 /** What the tags mean for whoever reads them, and how often it happened. */
 export function factsOf(error) {

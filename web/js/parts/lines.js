@@ -39,7 +39,7 @@ export function treeLines({ roots, children }, isOpen, shown = null) {
 }
 
 /** Return siblings in groups; those that share a namespace stand together where the first stood. */
-export function byNamespace(names) {
+function byNamespace(names) {
   const groups = new Map();
   for (const name of names) {
     const space = namespaceOf(name);

@@ -204,7 +204,7 @@ class PartList extends HTMLElement {
 function moreWords(left, begins) {
   const others = left.filter((name) => begins.has(name)).length;
   const systems = left.length - others;
-  const following = `${systems} ${systems === 1 ? "system deviates" : "systems deviate"} because of these`;
+  const following = `${systems} ${systems === 1 ? "system follows" : "systems follow"} from these`;
   return [others > 0 ? `${others} more` : "", systems > 0 ? following : ""].filter(Boolean).join(", ");
 }
 

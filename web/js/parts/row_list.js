@@ -50,10 +50,6 @@ export class RowList {
     this.#focus(this.rows.indexOf(this.rows.kept));
   }
 
-  get length() {
-    return this.rows.length;
-  }
-
   hide(isHidden) {
     setAttribute(this.node, "hidden", isHidden);
   }

@@ -11,6 +11,8 @@ import { LOOK_WORDS } from "/web/js/parts/verdict.js";
 
 /** One cannot follow more changes of a second than this allows. */
 const PAUSE_MS = 250;
+/** A square is no larger on a wide screen. */
+const LARGEST_PX = 13;
 const SVG = "http://www.w3.org/2000/svg";
 
 class PartSquares extends HTMLElement {
@@ -62,6 +64,7 @@ class PartSquares extends HTMLElement {
     const key = looks.join();
     if (key !== this.key) {
       this.key = key;
+      this.svg.style.maxWidth = `${this.columns * LARGEST_PX}px`;
       setAttribute(this.svg, "viewBox", `-0.1 -0.1 ${this.columns + 0.2} ${rows + 0.2}`);
       for (const [look, path] of Object.entries(squarePaths(looks, this.columns)))
         setAttribute(this.paths[look], "d", path);

@@ -7,7 +7,7 @@ import "/web/js/base/sparkline.js";
 
 /** A name that is longer is cut in its middle; the end stays, since names differ there. */
 const LONG = 20;
-const TAIL = 8;
+const TAIL = 5;
 /** A shape for each level, so that colour is not all that tells them apart. */
 const SHAPES = {
   ok: "M8 6.5a1.5 1.5 0 1 0 .01 0",

@@ -49,6 +49,7 @@ class Timeline extends HTMLElement {
   /** The moment that is asked for, ms; null: none. */
   #pending = null;
   #asked = null;
+  #problem = "";
 
   connectedCallback() {
     this.bar = new Toolbar({
@@ -212,7 +213,9 @@ class Timeline extends HTMLElement {
     const cut = this.#record.isCut ? `only the last ${MOST_EVENTS.toLocaleString("en-GB")} events` : "";
     this.bar.show({ ...state, cut, pinned: at ? timeAndDay(at) : "" });
     setAttribute(this, "data-pinned", Boolean(at));
-    if (this.#record.problem) this.#tell(`Earlier events are not shown: ${this.#record.problem}`);
+    const { problem } = this.#record;
+    if (problem !== this.#problem) this.#tell(problem && `Earlier events are not shown: ${problem}`);
+    this.#problem = problem;
   }
 
   #drawTable(now) {
@@ -373,6 +376,7 @@ class Timeline extends HTMLElement {
     const time = typeof at === "number" ? at : Date.parse(at);
     if (!Number.isFinite(time) || !this.#view) return;
     this.#show("timeline");
+    this.dispatchEvent(new CustomEvent("ph-tab", { bubbles: true, detail: "log" }));
     this.#pin(time);
   }
 

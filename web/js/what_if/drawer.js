@@ -91,6 +91,7 @@ class WhatIf extends HTMLElement {
       this.title_,
       el("span", { class: "quiet" }, "on a copy of this robot; nothing here reaches it"),
       close,
+      this.outcome.headline,
     );
   }
 

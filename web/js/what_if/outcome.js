@@ -22,6 +22,8 @@ export class Outcome {
       oninput: () => this.#draw(),
     });
     this.moment = el("output", { class: "what-if-moment" });
+    /** The simulated state in a line, for where the table may be out of sight. */
+    this.headline = el("span", { class: "what-if-headline narrow-only", "aria-hidden": "true" });
     this.column = el("th", { scope: "col" }, "Simulation");
     this.rows = el("tbody");
     const topics = ["", "Live, now"].map((text) => el("th", { scope: "col" }, text));
@@ -73,6 +75,7 @@ export class Outcome {
     setAttribute(this.head, "aria-valuetext", words);
     setText(this.column, `Simulation, after ${seconds(sample.t_s)}`);
     const rows = compare(this.live, stateOf(sample));
+    setText(this.headline, rows[0].simulated);
     renderOnce(this.rows, JSON.stringify(rows), () =>
       rows.map(({ topic, live, simulated, differs }) =>
         el(

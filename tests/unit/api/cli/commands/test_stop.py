@@ -123,7 +123,8 @@ def test_a_stop_without_an_answer_may_have_arrived(robot: Robot, capsys: Output)
 
 
 def test_a_rejected_token_is_told_with_what_to_do(robot: Robot, capsys: Output) -> None:
-    robot.answer = Answer(401, {"detail": "a token is needed"}, is_volatile=False)
+    body = {"detail": "a token is needed", "hint": "send the header `Authorization`"}
+    robot.answer = Answer(401, body, is_volatile=False)
 
     assert main(["stop", "--format", "json"]) == 1
 
