@@ -13,6 +13,7 @@ from importlib.resources.abc import Traversable
 from pathlib import PurePosixPath
 from typing import TypeAlias
 
+from api.http.page.ahead import kept
 from api.http.page.bundles import make_bundles, pack
 from api.http.page.minifier import minified
 from api.http.page.module_graph import Modules
@@ -56,7 +57,8 @@ def assembled_page() -> AssembledPage:
     Raises:
         PageError: A file cannot be bundled.
     """
-    return assemble({path: file.content.decode() for path, file in sources().items()}, minified)
+    texts = {path: file.content.decode() for path, file in sources().items()}
+    return assemble(texts, lambda bundles: kept(bundles) or minified(bundles))
 
 
 def assemble(texts: Mapping[str, str], shorten: Shorten = lambda texts: texts) -> AssembledPage:
