@@ -440,7 +440,7 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "sending": ("example", sending),
     "far_down": ("large", far_down),
     "parts_300": ("crowded", parts_300),
-    "parts_attention": ("crowded", parts_attention),
+    "attention": ("crowded", parts_attention),
     "parts_filtered": ("crowded", parts_filtered),
     "earlier_events": ("example", earlier_events),
     "timeline": ("example", timeline),

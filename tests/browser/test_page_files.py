@@ -110,7 +110,7 @@ def test_the_state_is_shown_before_the_stream_is_connected(
     page.goto(service.url)
 
     expect(page.get_by_role("heading", level=1)).to_contain_text("IDLE: no task")
-    expect(page.get_by_role("button", name="STOP")).to_be_enabled()
+    expect(page.get_by_role("button", name="STOP", exact=True)).to_be_enabled()
     # What the page brought grows old as any other frame.
     expect(page.get_by_role("heading", level=1)).to_contain_text("No contact")
     assert complaints.messages == []
@@ -160,7 +160,7 @@ def test_a_page_of_another_version_asks_to_reload_and_waits_for_a_person(
     page.evaluate("window.isSamePage = true")
     page.wait_for_timeout(1000)
     assert page.evaluate("window.isSamePage")
-    expect(page.get_by_role("button", name="STOP")).to_be_enabled()
+    expect(page.get_by_role("button", name="STOP", exact=True)).to_be_enabled()
 
     with page.expect_navigation():
         page.get_by_role("button", name="Reload").click()

@@ -74,12 +74,13 @@ def test_a_low_battery_is_tried_on_a_copy_and_the_live_robot_is_not_touched(
     expect(drawer(desktop)).to_contain_text("SIMULATION")
     slide(desktop, drawer(desktop).get_by_role("slider", name="Simulated Battery: set"), 0.2)
     state = outcome(desktop, "State")
-    expect(state.get_by_role("cell").last).to_contain_text("is below 50 %")
+    simulated = state.get_by_role("cell").last
+    expect(simulated).to_contain_text("is below 50 %", timeout=SIMULATED_MS)
     expect(state.get_by_role("cell").first).to_have_text("IDLE: no task")
     expect(outcome(desktop, "Errors").get_by_role("cell").last).to_contain_text("BATTERY_LOW")
     expect(sentence(desktop)).to_have_text("IDLE: no task")
     drawer(desktop).get_by_role("button", name="Leave Battery as it is").click()
-    expect(state.get_by_role("cell").last).to_have_text("IDLE: no task")
+    expect(simulated).to_have_text("IDLE: no task", timeout=SIMULATED_MS)
     assert unwritten() == []
     assert complaints.messages == []
 
@@ -117,7 +118,8 @@ def test_a_step_that_the_robot_refuses_says_why(
     form = opened(desktop)
     form.get_by_role("combobox", name="What happens").select_option("STOP is pressed")
     form.get_by_role("button", name="Add", exact=True).click()
-    expect(outcome(desktop, "Emergency stop")).to_contain_text("not engaged≠ engaged")
+    stop = outcome(desktop, "Emergency stop")
+    expect(stop).to_contain_text("not engaged≠ engaged", timeout=SIMULATED_MS)
     form.get_by_role("combobox", name="What happens").select_option("A mode is requested")
     form.get_by_role("combobox", name="To what").select_option("actuation")
     form.get_by_role("combobox", name="How", exact=True).select_option("MODERATE")

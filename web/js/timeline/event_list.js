@@ -21,6 +21,7 @@ class EventList extends HTMLElement {
   #shown = SHOWN;
   #isSeen = false;
   #isDue = false;
+  #updated = () => {};
 
   connectedCallback() {
     this.details = el("input", { type: "checkbox", role: "switch" });
@@ -49,6 +50,7 @@ class EventList extends HTMLElement {
   update({ live }) {
     this.#isDue ||= this.#state.events !== live.events;
     this.#state = live;
+    this.#updated();
     if (this.#isDue && this.#isSeen) this.#render();
   }
 
@@ -74,6 +76,8 @@ class EventList extends HTMLElement {
       const detail = await request("GET", path);
       this.failure.textContent = "";
       this.dispatchEvent(new CustomEvent("ph-earlier", { bubbles: true, detail }));
+      // The store has them at once, this list with the next drawing.
+      await new Promise((resolve) => (this.#updated = resolve));
     } catch (error) {
       this.failure.textContent = error.message;
     }

@@ -26,12 +26,12 @@ export class Outcome {
     this.headline = el("span", { class: "what-if-headline narrow-only", "aria-hidden": "true" });
     this.column = el("th", { scope: "col" }, "Simulation");
     this.rows = el("tbody");
-    const topics = ["", "Live, now"].map((text) => el("th", { scope: "col" }, text));
+    const now = el("th", { scope: "col" }, "Live, now");
     const table = el(
       "table",
       { class: "what-if-outcome" },
       el("caption", { class: "visually-hidden" }, "The robot now, and in the simulation"),
-      el("thead", {}, el("tr", {}, ...topics, this.column)),
+      el("thead", {}, el("tr", {}, el("td"), now, this.column)),
       this.rows,
     );
     this.events = el("ol", { class: "what-if-events" });
