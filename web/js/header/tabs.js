@@ -16,6 +16,9 @@ class Tabs extends HTMLElement {
     this.append(...this.tabs.map(({ button }) => button));
     for (const { name, button } of this.tabs) button.addEventListener("click", () => this.#choose(name));
     this.addEventListener("keydown", (event) => this.#move(event));
+    const narrow = matchMedia("(max-width: 1023px)");
+    narrow.addEventListener("change", () => letScroll(narrow.matches));
+    letScroll(narrow.matches);
   }
 
   update({ state }) {
@@ -55,6 +58,11 @@ class Tabs extends HTMLElement {
     this.#choose(name);
     button.focus();
   }
+}
+
+/** What scrolls as a whole is scrolled by keys too. */
+function letScroll(isOne) {
+  setAttribute(document.getElementById("panels"), "tabindex", isOne ? 0 : null);
 }
 
 function tab(title) {
