@@ -4,8 +4,7 @@ One input in; commands to nodes and vehicle, and events, out. Goals stay inside,
 stops the vehicle in the same step.
 """
 
-from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from collections.abc import Sequence
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
 from domain.inputs import Input, TimePassed
@@ -13,8 +12,6 @@ from domain.navigation import Navigation
 from domain.outbox import Outputs
 from domain.supervision import Supervision
 from domain.timebase import Instant
-
-_Take: TypeAlias = Callable[[Input, Instant], Outputs]
 
 
 class Onboard:
@@ -50,7 +47,7 @@ class Onboard:
             PilothouseError: The input is rejected; it changed nothing.
         """
         self._let_pass(now)
-        self._take(given, now, self.core.handle)
+        self._take(given, now)
         return self._told()
 
     def take_in(self, given: Input, now: Instant) -> Outputs:
@@ -69,11 +66,8 @@ class Onboard:
         Raises:
             PilothouseError: The input is rejected; it changed nothing.
         """
-        self._take(given, now, self.core.take_in)
-        if self.core.driving.watch.fresh_state(now) is None:
-            self.navigation.skip_missed(now)
-        else:
-            self._let_navigation_act(now, self.core.take_in)
+        self._take(given, now, is_late=True)
+        self._let_navigation_act(now, is_late=True)
         return self._told()
 
     def _told(self) -> Outputs:
@@ -84,11 +78,11 @@ class Onboard:
         while (due := self.navigation.wake_at()) is not None and due <= now:
             core_due = self.core.wake_at()
             if core_due is not None and core_due <= due:
-                self._take(TimePassed(), due, self.core.handle)
-            self._let_navigation_act(due, self.core.handle)
+                self._take(TimePassed(), due)
+            self._let_navigation_act(due)
 
-    def _take(self, given: Input, now: Instant, take: _Take) -> None:
-        outputs = take(given, now)
+    def _take(self, given: Input, now: Instant, *, is_late: bool = False) -> None:
+        outputs = self.core.take_in(given, now) if is_late else self.core.handle(given, now)
         if not outputs.commands:
             self._untold.append(outputs)
             return
@@ -100,14 +94,18 @@ class Onboard:
         for goal in goals:
             self.navigation.handle(goal, now)
         if goals:
-            self._let_navigation_act(now, take)
+            self._let_navigation_act(now, is_late=is_late)
 
-    def _let_navigation_act(self, now: Instant, take: _Take) -> None:
+    def _let_navigation_act(self, now: Instant, *, is_late: bool = False) -> None:
+        if is_late and self.core.driving.watch.fresh_state(now) is None:
+            # The pose is old by our own fault: that is no reason to give up a goal.
+            self.navigation.skip_missed(now)
+            return
         for message in self.navigation.advance(now):
             if isinstance(message, Drive):
                 self._untold.append(Outputs(commands=(message,)))
             else:
-                self._take(message, now, take)
+                self._take(message, now, is_late=is_late)
 
 
 def _merged(parts: Sequence[Outputs]) -> Outputs:

@@ -272,6 +272,19 @@ def test_without_a_pose_no_missed_control_step_is_made_up_for(robot: CoreRobot) 
     assert [type(command).__name__ for command in outputs.commands] == ["Drive"]
 
 
+def test_a_task_that_is_submitted_while_the_service_is_late_is_driven_with_the_next_pose(
+    robot: CoreRobot,
+) -> None:
+    late = robot.now + seconds(1)
+    asked = robot.onboard.take_in(TaskRequest(straight(), 0, "stanley", 2.8), late)
+    reported = robot.onboard.take_in(at(robot), late)
+    driven = robot.onboard.handle(TimePassed(), late + seconds(0.1))
+
+    ended = [event.kind for each in (asked, reported, driven) for event in each.events]
+    assert "task.aborted" not in ended
+    assert [type(command).__name__ for command in driven.commands][:1] == ["Drive"]
+
+
 def test_what_was_due_is_judged_next_if_the_input_does_not_end_it(robot: CoreRobot) -> None:
     robot.submit_task(straight())
     robot.advance(1)
