@@ -32,6 +32,10 @@ def test_thresholds_and_times_are_those_that_are_said() -> None:
     )["battery_level"]
 
     assert battery.facts() == {
+        "label": "battery",
+        "error": "BATTERY_LOW",
+        "severity": "critical",
+        "bad_side": "below",
         "threshold": 0.3,
         "clear_threshold": 0.35,
         "for_s": 1.5,
