@@ -264,7 +264,7 @@ def choose(page: Page, table: bytes) -> None:
 
 def task_preview(page: Page, service: Service) -> None:
     choose(page, service.track_ahead(30, scans=True))
-    page.get_by_text("Preview of field.csv").wait_for()
+    page.get_by_role("heading", name="Preview").wait_for()
 
 
 def rejected(page: Page, _: Service) -> None:

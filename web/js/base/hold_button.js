@@ -10,6 +10,7 @@
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
 
 const HOLD_MS = 1000;
+const AWAY_PX = 32;
 const TOLD_MS = 2500;
 const CONFIRM_MS = 5000;
 
@@ -68,8 +69,14 @@ class HoldButton extends HTMLElement {
 
   #listen() {
     const { button } = this;
-    button.addEventListener("pointerdown", ({ button: which }) => which === 0 && this.#start());
-    for (const end of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) {
+    button.addEventListener("pointerdown", ({ button: which, pointerId }) => {
+      if (which !== 0) return;
+      // What is above may grow meanwhile: the press goes on where the button moves from under it.
+      if (pointerId) button.setPointerCapture(pointerId);
+      this.#start();
+    });
+    button.addEventListener("pointermove", (event) => isBeside(button, event) && this.#letGo());
+    for (const end of ["pointerup", "pointercancel", "blur", "keyup"]) {
       button.addEventListener(end, () => this.#letGo());
     }
     for (const kind of ["keydown", "keyup"]) {
@@ -139,6 +146,13 @@ class HoldButton extends HTMLElement {
     setText(this.text, isLabel ? `${this.#short}${this.#volatile ? "; may be forgotten" : ""}` : text);
     setAttribute(this.button, "aria-label", text);
   }
+}
+
+/** Whether a pointer was moved away from a button, and not only a little. */
+function isBeside(button, { clientX, clientY }) {
+  const { left, right, top, bottom } = button.getBoundingClientRect();
+  const [x, y] = [Math.max(left - clientX, clientX - right), Math.max(top - clientY, clientY - bottom)];
+  return Math.max(x, y) > AWAY_PX;
 }
 
 customElements.define("ph-hold-button", HoldButton);

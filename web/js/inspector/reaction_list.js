@@ -32,8 +32,11 @@ class ReactionList extends HTMLElement {
     return all.filter(([, { state }]) => state === "acting" || state === "exhausted").length;
   }
 
-  /** Show reactions in order; a line that stays is moved only if it has to be. */
+  /** Show reactions in order; a line that stays is not moved, since a press on it would end. */
   #place(list, entries, view) {
+    const names = new Set(entries.map(([name]) => name));
+    for (const [name, line] of this.#lines)
+      if (line.parentElement === list && !names.has(name)) line.remove();
     entries.forEach(([name, reaction], position) => {
       const line = this.#lines.get(name) ?? el("li", {}, el("ph-reaction"));
       this.#lines.set(name, line);
