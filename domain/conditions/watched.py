@@ -24,6 +24,26 @@ class _Watched:
     """Since when it is false or unknown; None: it is true."""
     followers: list[dict[str, Condition]] = field(default_factory=list)
     """Where it is noted that its value changed."""
+    look: int = 0
+    """Number of the look in which it got its value."""
+    before: tuple[Truth, Instant, Instant | None] | None = None
+    """Value, `since` and `broken_since` before that look; None: it had none."""
+
+    def turn(self, truth: Truth, now: Instant, look: int) -> None:
+        """Take another value; one that ends in the same look leaves no trace.
+
+        Of two errors that are decided about in one step, the first may end what the second begins.
+        """
+        if self.look != look:
+            self.look, self.before = look, (self.truth, self.since, self.broken_since)
+        elif self.before is not None and self.before[0] is truth:
+            self.truth, self.since, self.broken_since = self.before
+            return
+        self.truth, self.since = truth, now
+        if truth is Truth.TRUE:
+            self.broken_since = None
+        elif self.broken_since is None:
+            self.broken_since = now
 
 
 @dataclass(slots=True)
@@ -52,6 +72,7 @@ class WatchedConditions:
         self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
         self._touched: dict[Topic, None] = {}
         """In the order in which they were touched."""
+        self._look = 0
         self.may_have_changed = False
         """Whether facts may have changed since the last `renew`."""
         self.revision = 0
@@ -109,11 +130,17 @@ class WatchedConditions:
         if topic in self._by_topic:
             self._touched[topic] = None
 
-    def renew(self, now: Instant) -> tuple[Condition, ...]:
+    def renew(self, now: Instant, *, goes_on: bool = False) -> tuple[Condition, ...]:
         """Evaluate what was touched; return the conditions whose value changed.
 
         They come in the order in which they were touched, and then in which they were added.
+
+        Args:
+            now: The current time.
+            goes_on: What was touched follows from the last look, and belongs to it.
         """
+        if not goes_on:
+            self._look += 1
         self.may_have_changed = False
         doubtful: dict[str, _Watched] = {}
         touched, self._touched = self._touched, {}
@@ -130,11 +157,7 @@ class WatchedConditions:
         for watched in doubtful.values():
             truth = self._truth_of(watched.condition)
             if truth is not watched.truth:
-                watched.truth, watched.since = truth, now
-                if truth is Truth.TRUE:
-                    watched.broken_since = None
-                elif watched.broken_since is None:
-                    watched.broken_since = now
+                watched.turn(truth, now, self._look)
                 changed.append(watched.condition)
                 for noted in watched.followers:
                     noted[watched.condition.text] = watched.condition

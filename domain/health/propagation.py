@@ -171,7 +171,7 @@ class Propagation(Concern):
                 moved = True
             if self._take_switched(now):
                 moved = True
-                self._watched.renew(now)
+                self._watched.renew(now, goes_on=True)
                 self._take_changed()
         return moved
 

@@ -160,3 +160,36 @@ def test_changes_come_in_the_order_of_what_was_touched() -> None:
     watched.touch(Topic(TopicKind.SIGNAL, "a"))
 
     assert _texts(watched.renew(1)) == ["b", "a or b", "a"]
+
+
+def _look(watched: WatchedConditions, facts: ToldFacts, *levels: float | None) -> None:
+    """Let the battery have these levels, one after the other in one look at 3 s."""
+    for number, level in enumerate(levels):
+        facts.observed["battery_level"] = level
+        watched.touch(BATTERY)
+        watched.renew(seconds(3), goes_on=number > 0)
+
+
+def test_a_value_that_ends_in_the_same_look_leaves_no_trace() -> None:
+    facts = ToldFacts({"battery_level": 0.5})
+    high = Condition("battery_level > 0.3")
+    watched = WatchedConditions(facts)
+    watched.watch([high], 0)
+
+    _look(watched, facts, 0.2, 0.5)
+    assert (watched.truth(high), watched.since(high)) == (Truth.TRUE, 0)
+    assert watched.broken_since(high) is None
+
+    _look(watched, facts, 0.2)
+    _look(watched, facts, 0.5)
+    assert watched.since(high) == seconds(3)
+
+
+def test_what_is_false_and_unknown_only_within_a_look_stays_false_since_then() -> None:
+    facts = ToldFacts({"battery_level": 0.2})
+    high = Condition("battery_level > 0.3")
+    watched = WatchedConditions(facts)
+    watched.watch([high], 0)
+
+    _look(watched, facts, None, 0.5, 0.2)
+    assert (watched.since(high), watched.broken_since(high)) == (0, 0)
