@@ -112,3 +112,14 @@ def test_every_step_is_shown_once_in_its_stage_and_the_way_back_last(page: Page)
     chance = random.Random(14)
     plans = [[a_step(chance, n) for n in range(chance.randrange(9))] for _ in range(RUNS)]
     assert page.evaluate(SHOW_STEPS, plans) == [expected_lists(steps) for steps in plans]
+
+
+def test_an_error_with_numbers_and_without_a_signal_tells_them_plainly(desktop: Page) -> None:
+    told = desktop.evaluate(
+        """async () => {
+            const { measured } = await import("/web/js/inspector/error_words.js");
+            const error = { value: 0.9, threshold: 0.2, message: "max_speed drifted" };
+            return measured(error, undefined);
+        }"""
+    )
+    assert told == "0.9, limit 0.2"

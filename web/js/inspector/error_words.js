@@ -17,7 +17,9 @@ export function signalOf({ error, part, message }, signals) {
 export function measured({ value, threshold, message }, signal) {
   if (typeof value !== "number" || typeof threshold !== "number") return "";
   if (signal && message.includes(" is ")) return "";
-  const [said, limit] = [value, threshold].map((number) => valueText(signal?.signal, signal ?? {}, number));
+  // The error of a part may have numbers, and no signal that says in which unit.
+  const { signal: name, ...facts } = signal ?? { signal: "", unit: "" };
+  const [said, limit] = [value, threshold].map((number) => valueText(name, facts, number));
   return `${said}, limit ${limit}`;
 }
 
