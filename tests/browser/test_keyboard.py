@@ -81,6 +81,8 @@ def test_a_mode_is_switched_with_at_most_twelve_keys_from_the_top(
     expect(change).to_contain_text("PERFORMANCE", timeout=SLOW_MS)
     expect(change).to_contain_text("succeeded", timeout=SLOW_MS)
     assert typist.count <= KEYS_AT_MOST
+    actual = desktop.get_by_role("radio", name="PERFORMANCE")
+    expect(actual).to_contain_text("actual", timeout=SLOW_MS)
     assert service.request("GET", "/systems/actuation/mode")["mode"] == "PERFORMANCE"
 
 

@@ -62,6 +62,7 @@ let refusedAt = -Infinity;
 /** The moment to which the panels are pinned: `{at, state}`, time in ms; null: they show now. */
 let moment = null;
 let drawnLevel = null;
+let panelsLoaded = null;
 
 function take(message) {
   state = fold(state, message);
@@ -117,9 +118,13 @@ function currentView() {
 }
 
 /** What is not needed to see the state and to stop the robot comes after the first draw. */
-async function loadPanels() {
-  await import("/web/js/panels.js");
-  pacer.ask(true);
+function loadPanels() {
+  panelsLoaded ??= import("/web/js/panels.js").then(
+    () => pacer.ask(true),
+    // It is asked for again while there is contact.
+    () => (panelsLoaded = null),
+  );
+  return panelsLoaded;
 }
 
 /** Name of the first system that no other contains; null: none is known yet. */
@@ -174,7 +179,10 @@ function askForToken() {
 function watch() {
   const level = connection.level();
   showTitle(state, { level }, tokenForm.isOpen);
-  if (level === "live") latency.look();
+  if (level === "live") {
+    latency.look();
+    loadPanels();
+  }
   pacer.ask(level !== document.body.dataset.contact);
 }
 
@@ -210,7 +218,8 @@ connection.addEventListener("frame", ({ detail }) => hear(detail));
 document.addEventListener("ph-select", ({ detail }) => {
   selected = detail;
   draw();
-  panel.bringIntoView?.();
+  // On a slow link somebody may select a part before its panel is there.
+  loadPanels().then(() => panel.bringIntoView?.());
 });
 document.addEventListener("ph-back", () => document.querySelector("ph-part-tree").focusRow());
 document.addEventListener("ph-preview", ({ detail }) => {
