@@ -65,6 +65,8 @@ def test_a_mode_is_switched_with_at_most_twelve_keys_from_the_top(
     desktop: Page, service: Service, way: str
 ) -> None:
     service.request("POST", "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
+    # Its modes are there, and as they are after the request.
+    expect(desktop.get_by_role("radio", name="MODERATE")).to_contain_text("actual", timeout=SLOW_MS)
     expect(desktop.get_by_role("radio", name="PERFORMANCE")).to_be_enabled()
     typist = Typist(desktop)
     if way == "skip link":
@@ -73,7 +75,7 @@ def test_a_mode_is_switched_with_at_most_twelve_keys_from_the_top(
         typist.press("Enter")
     else:
         typist.press("3")
-    assert focused_in(desktop, "selected")
+    expect(desktop.locator("#selected:focus-within")).to_be_visible()
     typist.until("Tab", "MODERATE")
     typist.until("ArrowRight", "PERFORMANCE")
     typist.press("Enter")
