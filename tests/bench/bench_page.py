@@ -69,6 +69,7 @@ def _versions() -> dict[str, _Version]:
 NOTES = [] if "PILOTHOUSE_BEFORE" in os.environ else ["Only the page of now was measured."]
 
 
+@pytest.mark.timeout(900)
 def test_how_soon_the_page_can_be_used(tmp_path: Path) -> None:
     model = _large_model(tmp_path)
     rows = {
@@ -92,6 +93,7 @@ def test_how_soon_the_page_can_be_used(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.timeout(900)
 def test_what_drawing_costs(tmp_path: Path) -> None:
     model = _large_model(tmp_path)
     rows = {
