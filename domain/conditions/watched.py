@@ -36,7 +36,7 @@ class _Watched:
         """
         if self.look != look:
             self.look, self.before = look, (self.truth, self.since, self.broken_since)
-        elif self.before is not None and self.before[0] is truth:
+        elif self.since == now and self.before is not None and self.before[0] is truth:
             self.truth, self.since, self.broken_since = self.before
             return
         self.truth, self.since = truth, now

@@ -193,3 +193,16 @@ def test_what_is_false_and_unknown_only_within_a_look_stays_false_since_then() -
 
     _look(watched, facts, None, 0.5, 0.2)
     assert (watched.since(high), watched.broken_since(high)) == (0, 0)
+
+
+def test_what_goes_on_at_a_later_time_has_lasted() -> None:
+    facts = ToldFacts({"battery_level": 0.5})
+    high = Condition("battery_level > 0.3")
+    watched = WatchedConditions(facts)
+    watched.watch([high], 0)
+
+    _look(watched, facts, 0.2)
+    facts.observed["battery_level"] = 0.5
+    watched.touch(BATTERY)
+    watched.renew(seconds(4), goes_on=True)
+    assert (watched.since(high), watched.broken_since(high)) == (seconds(4), None)
