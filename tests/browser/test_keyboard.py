@@ -6,18 +6,15 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Page, expect
 
+from tests.browser.places import stop
 from tests.browser.station import Complaints, Service
 
 pytestmark = pytest.mark.browser
 
 SLOW_MS = 15_000
 KEYS_AT_MOST = 12
-
-
-def stop(page: Page) -> Locator:
-    return page.get_by_role("button", name=re.compile("^STOP"))
 
 
 def focused_in(page: Page, region: str) -> bool:
@@ -75,7 +72,7 @@ def test_a_mode_is_switched_with_at_most_twelve_keys_from_the_top(
         typist.press("Enter")
     else:
         typist.press("3")
-    expect(desktop.locator("#selected:focus-within")).to_be_visible()
+    expect(desktop.get_by_role("radio", name="MODERATE")).to_be_focused()
     typist.until("Tab", "MODERATE")
     typist.until("ArrowRight", "PERFORMANCE")
     typist.press("Enter")

@@ -2,6 +2,8 @@
 
 const KEPT = "pilothouse-plain-keys";
 const REGIONS = ["parts", "map", "selected", "signals", "log", "why"];
+/** What a region is gone to for: the row in the list of parts, the mode of the selected part. */
+const STOPS = "[role=treeitem][tabindex='0'], [role=radio][tabindex='0']:enabled";
 const FOCUSABLE = "a[href], summary, button:enabled, input:enabled, select:enabled, [tabindex='0']";
 
 /** For the list of keys: `{key, what}`. */
@@ -52,8 +54,9 @@ export function goTo(name) {
   const tabs = region.dataset.tabs.split(" ");
   if (!tabs.includes(document.body.dataset.tab)) tell("ph-tab", tabs[0]);
   const isSeen = (node) => node.checkVisibility();
-  const row = [...region.querySelectorAll("[role=treeitem][tabindex='0']")].find(isSeen);
-  const target = row ?? [...region.querySelectorAll(FOCUSABLE)].find(isSeen) ?? region;
+  // What above it may go, as a reason that ends, and would take the focus with it.
+  const stop = [...region.querySelectorAll(STOPS)].find(isSeen);
+  const target = stop ?? [...region.querySelectorAll(FOCUSABLE)].find(isSeen) ?? region;
   target.focus();
 }
 
