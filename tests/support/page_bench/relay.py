@@ -8,7 +8,7 @@ import asyncio
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 
 _CHUNK = 65_536
 _STREAM = b"GET /ws"
@@ -37,11 +37,13 @@ class Relay:
     async def _pass_on(self, near: asyncio.StreamReader, to_near: asyncio.StreamWriter) -> None:
         # The browser takes the connection for open at once; its first bytes wait for that.
         await asyncio.sleep(2 * self._one_way_s)
-        first = await near.read(_CHUNK)
-        port = self._stream_port if first.startswith(_STREAM) else self._port
-        far, to_far = await asyncio.open_connection("127.0.0.1", port)
-        with suppress(ConnectionError):
-            await asyncio.gather(self._pump(near, to_far, first), self._pump(far, to_near))
+        with closing(to_near), suppress(ConnectionError):
+            first = await near.read(_CHUNK)
+            port = self._stream_port if first.startswith(_STREAM) else self._port
+            far, to_far = await asyncio.open_connection("127.0.0.1", port)
+            # Also where the relay ends before the connection does.
+            with closing(to_far):
+                await asyncio.gather(self._pump(near, to_far, first), self._pump(far, to_near))
 
     async def _pump(
         self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, first: bytes = b""
@@ -59,12 +61,15 @@ class Relay:
                 writer.write(data)
 
         delivering = asyncio.create_task(deliver())
-        data = first or await reader.read(_CHUNK)
-        while data:
-            under_way.put_nowait((loop.time() + self._one_way_s, data))
-            data = await reader.read(_CHUNK)
-        under_way.put_nowait((loop.time() + self._one_way_s, b""))
-        await delivering
+        try:
+            data = first or await reader.read(_CHUNK)
+            while data:
+                under_way.put_nowait((loop.time() + self._one_way_s, data))
+                data = await reader.read(_CHUNK)
+            under_way.put_nowait((loop.time() + self._one_way_s, b""))
+            await delivering
+        finally:
+            delivering.cancel()
 
 
 @contextmanager
