@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Complaints, Service, free_port
+from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Complaints, Service, serving
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -14,14 +14,8 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    port = free_port()
-    with (tmp_path_factory.mktemp("service") / "output").open("w+b") as output:
-        service = Service(port, output)
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
+    with serving(tmp_path_factory.mktemp("service")) as service:
+        yield service
 
 
 @pytest.fixture
@@ -40,6 +34,15 @@ def browser() -> Iterator["Browser"]:
         browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=CHROMIUM_ARGUMENTS)
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope="module")
+def page(browser: "Browser", running_service: Service) -> Iterator["Page"]:
+    """Return a page in which modules of it are imported and called."""
+    page = browser.new_page()
+    page.goto(running_service.url)
+    yield page
+    page.close()
 
 
 @pytest.fixture

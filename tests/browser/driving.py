@@ -4,14 +4,12 @@ from typing import TYPE_CHECKING, Any
 
 from playwright.sync_api import expect
 
+from tests.browser.places import sentence
+
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
     from tests.browser.station import Service
-
-
-def sentence(page: "Page") -> "Locator":
-    return page.get_by_role("heading", level=1)
 
 
 def strip(page: "Page") -> "Locator":

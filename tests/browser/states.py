@@ -24,7 +24,7 @@ from tests.browser.robots import (
     many_signals_robot,
     troubled_robot,
 )
-from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, free_port
+from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, serving
 from tests.support.shared import PROJECT
 
 SCREENS = {"desktop": (1440, 900), "phone": (360, 640)}
@@ -468,13 +468,8 @@ def running_robot(kind: Robot) -> Iterator[Service]:
             "mobile": (str(MOBILE / "model.yaml"), "--robot", str(MOBILE / "robot.yaml")),
             "guarded_failing": guarded_robot(folder, "fail"),
         }
-        with (folder / "output").open("w+b") as output:
-            service = Service(free_port(), output, files[kind], str(folder / "data"))
-            try:
-                service.start()
-                yield service
-            finally:
-                service.kill()
+        with serving(folder, files[kind], keeps=True) as service:
+            yield service
 
 
 def shoot(browser: Browser, folder: Path, name: str, screen: str) -> None:

@@ -10,7 +10,8 @@ import sys
 import time
 import urllib.error
 import urllib.request
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -150,6 +151,27 @@ class Service:
                 return bool(answer.status == 200)
         except (urllib.error.URLError, ConnectionError, TimeoutError):
             return False
+
+
+@contextmanager
+def serving(
+    folder: Path, arguments: tuple[str, ...] = (), *, keeps: bool = False
+) -> Iterator[Service]:
+    """Let a service run.
+
+    Args:
+        folder: Gets its output, and what it keeps.
+        arguments: Further ones of `pilothouse serve`.
+        keeps: Whether it keeps anything beyond its own process.
+    """
+    data = str(folder / "data") if keeps else ":memory:"
+    with (folder / "output").open("w+b") as output:
+        service = Service(free_port(), output, arguments, data)
+        try:
+            service.start()
+            yield service
+        finally:
+            service.kill()
 
 
 @dataclass

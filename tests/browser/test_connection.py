@@ -6,8 +6,9 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
+from playwright.sync_api import Browser, Page, WebSocketRoute, expect
 
+from tests.browser.places import header, sentence, stop
 from tests.browser.station import Service
 
 pytestmark = pytest.mark.browser
@@ -16,18 +17,6 @@ BACK_MS = 15_000
 FROZEN_MS = 60_000
 SHOWN = """() => ["h1", "#parts", "#signals .value", ".chips-holds"]
     .map((place) => [...document.querySelectorAll(place)].map((node) => node.innerText))"""
-
-
-def sentence(page: Page) -> Locator:
-    return page.get_by_role("heading", level=1)
-
-
-def header(page: Page) -> Locator:
-    return page.locator("body > header")
-
-
-def stop(page: Page) -> Locator:
-    return page.get_by_role("button", name=re.compile("^STOP"))
 
 
 def test_a_stream_that_falls_silent_is_late_after_1_s_and_lost_after_3_s(

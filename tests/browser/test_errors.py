@@ -10,8 +10,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.browser.station import Complaints, Service, free_port
-from tests.browser.test_operator import serving
+from tests.browser.station import Complaints, Service, serving
 from tests.support.shared import PROJECT
 
 pytestmark = pytest.mark.browser
@@ -29,13 +28,8 @@ def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servic
     folder = tmp_path_factory.mktemp("errors")
     robot = folder / "robot.yaml"
     robot.write_text(ROBOT)
-    with (folder / "output").open("w+b") as output:
-        service = Service(free_port(), output, ("--robot", str(robot)))
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
+    with serving(folder, ("--robot", str(robot))) as service:
+        yield service
 
 
 @pytest.fixture
@@ -285,7 +279,8 @@ def error_of(service: Service) -> Any:  # noqa: ANN401
 def rover(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     mobile = PROJECT / "examples" / "mobile_robot"
     arguments = (str(mobile / "model.yaml"), "--robot", str(mobile / "robot.yaml"))
-    yield from serving(tmp_path_factory.mktemp("rover"), arguments)
+    with serving(tmp_path_factory.mktemp("rover"), arguments) as service:
+        yield service
 
 
 def test_what_follows_from_an_error_is_folded_below_it_and_is_acknowledged_there(

@@ -10,8 +10,8 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 from playwright.sync_api import Browser, Locator, Page, Request, expect
 
 from tests.browser.robots import LONG, guarded_robot
-from tests.browser.station import Service
-from tests.browser.test_operator import BROKEN_WORDS, opened, serving
+from tests.browser.station import Service, serving
+from tests.browser.test_operator import BROKEN_WORDS, opened
 
 pytestmark = pytest.mark.browser
 
@@ -22,13 +22,15 @@ SLOW_MS = 15_000
 @pytest.fixture(scope="module")
 def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("guarded")
-    yield from serving(folder, guarded_robot(folder))
+    with serving(folder, guarded_robot(folder)) as service:
+        yield service
 
 
 @pytest.fixture(scope="module")
 def failing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("failing")
-    yield from serving(folder, guarded_robot(folder, "fail"))
+    with serving(folder, guarded_robot(folder, "fail")) as service:
+        yield service
 
 
 @pytest.fixture

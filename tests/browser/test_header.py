@@ -9,6 +9,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.places import header, sentence, stop
 from tests.browser.states import aborted, drive, patched
 from tests.browser.station import Complaints, Service
 
@@ -16,18 +17,6 @@ pytestmark = pytest.mark.browser
 
 SLOW_MS = 10_000
 HEIGHT_PX = 72
-
-
-def sentence(page: Page) -> Locator:
-    return page.get_by_role("heading", level=1)
-
-
-def header(page: Page) -> Locator:
-    return page.locator("body > header")
-
-
-def stop(page: Page) -> Locator:
-    return page.get_by_role("button", name=re.compile("^STOP"))
 
 
 def press(button: Locator, page: Page) -> None:

@@ -11,8 +11,8 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.robots import large_robot
-from tests.browser.station import Complaints, Service
-from tests.browser.test_operator import opened, serving
+from tests.browser.station import Complaints, Service, serving
+from tests.browser.test_operator import opened
 
 pytestmark = pytest.mark.browser
 
@@ -23,7 +23,8 @@ SLOW_MS = 15_000
 @pytest.fixture(scope="module")
 def large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("large")
-    yield from serving(folder, large_robot(folder))
+    with serving(folder, large_robot(folder)) as service:
+        yield service
 
 
 @pytest.fixture

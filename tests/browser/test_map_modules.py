@@ -3,16 +3,13 @@
 import itertools
 import math
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
-
-from tests.browser.station import Service
+from playwright.sync_api import Page
 
 pytestmark = pytest.mark.browser
 
@@ -32,14 +29,6 @@ const looks = await import("/web/js/map/view.js");
 const view = { ...looks.emptyView(), width: 600, height: 400, x_m: 3, y_m: -7, scale: 8 };
 """
 WORDS = 'const words = await import("/web/js/base/task_words.js");'
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Iterator[Page]:
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 def run(page: Page, script: str) -> Any:  # noqa: ANN401 - whatever the script returns

@@ -10,21 +10,14 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.places import sentence, stop
 from tests.browser.station import Complaints, Service
 
 pytestmark = pytest.mark.browser
 
 
-def sentence(page: Page) -> Locator:
-    return page.get_by_role("heading", level=1)
-
-
 def row(page: Page, part: str) -> Locator:
     return page.get_by_role("treeitem", name=re.compile(f"^{part} "))
-
-
-def stop(page: Page) -> Locator:
-    return page.get_by_role("button", name=re.compile("^STOP"))
 
 
 def hold(button: Locator, page: Page, milliseconds: int) -> None:

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,8 +10,9 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 
+from tests.browser.places import sentence
 from tests.browser.robots import LONG, large_robot, troubled_robot
-from tests.browser.station import Complaints, Service, free_port
+from tests.browser.station import Complaints, Service, serving
 
 pytestmark = pytest.mark.browser
 
@@ -35,26 +35,18 @@ BROKEN_WORDS = """() => {
 }"""
 
 
-def serving(folder: Path, arguments: tuple[str, ...]) -> Iterator[Service]:
-    with (folder / "output").open("w+b") as output:
-        service = Service(free_port(), output, arguments)
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
-
-
 @pytest.fixture(scope="module")
 def troubled(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("troubled")
-    yield from serving(folder, troubled_robot(folder))
+    with serving(folder, troubled_robot(folder)) as service:
+        yield service
 
 
 @pytest.fixture(scope="module")
 def large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("large")
-    yield from serving(folder, large_robot(folder))
+    with serving(folder, large_robot(folder)) as service:
+        yield service
 
 
 def opened(browser: Browser, service: Service, width: int, height: int) -> Page:
@@ -62,10 +54,6 @@ def opened(browser: Browser, service: Service, width: int, height: int) -> Page:
     page.goto(service.url)
     expect(page.locator("ph-part-panel h2")).not_to_be_empty()
     return page
-
-
-def sentence(page: Page) -> Locator:
-    return page.get_by_role("heading", level=1)
 
 
 def card(page: Page, name: str) -> Locator:

@@ -1,15 +1,13 @@
 """The parts of the list of parts that count and do not draw, in the only engine that runs them."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
 
-from tests.browser.station import Service
 from tests.support.monitor import AT, off_target, part, system
 
 pytestmark = pytest.mark.browser
@@ -31,14 +29,6 @@ ERROR = {
     "caused_by": [],
     "message": "lidar has sent nothing for 2 s",
 }
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Iterator[Page]:
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 def run(page: Page, script: str, given: object = None) -> Any:  # noqa: ANN401 - whatever it returns

@@ -3,7 +3,6 @@
 import re
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
@@ -12,23 +11,13 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.robots import crowded_robot
-from tests.browser.station import Complaints, Service, free_port
+from tests.browser.station import Complaints, Service, serving
 
 pytestmark = pytest.mark.browser
 
 SLOW_MS = 20_000
 """For a change of 300 nodes, and a page of 1,000 parts, while other tests run."""
 SLOWED = "perception/unit_03/camera_wheel_003"
-
-
-def serving(folder: Path, arguments: tuple[str, ...]) -> Iterator[Service]:
-    with (folder / "output").open("w+b") as output:
-        service = Service(free_port(), output, arguments)
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
 
 
 def set_rate(service: Service, rate: int) -> None:
@@ -40,7 +29,7 @@ def set_rate(service: Service, rate: int) -> None:
 def crowded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """300 nodes that were activated; two are dead, one failed, and one was made slow."""
     folder = tmp_path_factory.mktemp("crowded")
-    for service in serving(folder, crowded_robot(folder, 300, faulty=True)):
+    with serving(folder, crowded_robot(folder, 300, faulty=True)) as service:
         change = service.request("POST", "/systems/carrier/mode", {"mode": "__DEFAULT__"})["id"]
         while service.request("GET", f"/changes/{change}")["status"] == "running":
             time.sleep(0.2)
@@ -51,7 +40,8 @@ def crowded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 @pytest.fixture(scope="module")
 def huge(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("huge")
-    yield from serving(folder, crowded_robot(folder, 1000))
+    with serving(folder, crowded_robot(folder, 1000)) as service:
+        yield service
 
 
 def opened(browser: Browser, service: Service, width: int = 1440, height: int = 900) -> Page:

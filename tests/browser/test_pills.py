@@ -1,15 +1,12 @@
 """What the pills of a part say, in the only engine that runs them."""
 
-from collections.abc import Iterator
-
 import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
 
 from api.cli.monitor.words import Json
-from tests.browser.station import Service
 from tests.support.monitor import part
 
 pytestmark = pytest.mark.browser
@@ -23,14 +20,6 @@ BY_RULE = {
     "blockers": [WHY],
 }
 REQUESTED = {**BY_RULE, "because": "requested", "rule": None, "blockers": []}
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Iterator[Page]:
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 def shown(page: Page, given: Json) -> list[str]:

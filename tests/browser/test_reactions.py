@@ -10,7 +10,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.station import Service, free_port
+from tests.browser.station import Service, serving
 
 pytestmark = pytest.mark.browser
 
@@ -39,13 +39,8 @@ def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servic
     folder = tmp_path_factory.mktemp("reactions")
     model = folder / "model.yaml"
     model.write_text(MODEL)
-    with (folder / "output").open("w+b") as output:
-        service = Service(free_port(), output, (str(model),))
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
+    with serving(folder, (str(model),)) as service:
+        yield service
 
 
 @pytest.fixture

@@ -1,16 +1,13 @@
 """Trees of reasons and lists of steps, whatever they hold: each is shown once and in its place."""
 
 import random
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
-
-from tests.browser.station import Service
+from playwright.sync_api import Page
 
 pytestmark = pytest.mark.browser
 
@@ -39,14 +36,6 @@ SHOW_STEPS = """async (every) => {
                 lists.map((list) => [...list.children].map(nameOf))];
     });
 }"""
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Iterator[Page]:
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 def a_blocker(chance: random.Random, depth: int) -> Tree:

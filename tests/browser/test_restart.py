@@ -11,7 +11,8 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.browser.station import Service, free_port
+from tests.browser.places import sentence
+from tests.browser.station import Service, serving
 
 pytestmark = pytest.mark.browser
 
@@ -22,24 +23,14 @@ def kept(tmp_path: Path) -> Iterator[Service]:
     (tmp_path / "track.csv").write_text("".join(f"{2 * n},0,0\n" for n in range(60)))
     robot = tmp_path / "robot.json"
     robot.write_text(json.dumps({"start_task": {"file": "track.csv"}}))
-    with (tmp_path / "output").open("w+b") as output:
-        arguments = ("--robot", str(robot))
-        service = Service(free_port(), output, arguments, str(tmp_path / "data"))
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
+    with serving(tmp_path, ("--robot", str(robot)), keeps=True) as service:
+        yield service
 
 
 def opened(browser: Browser, service: Service, width: int, height: int) -> Page:
     page = browser.new_page(viewport={"width": width, "height": height})
     page.goto(service.url)
     return page
-
-
-def sentence(page: Page) -> Locator:
-    return page.get_by_role("heading", level=1)
 
 
 def restart(page: Page, service: Service) -> None:

@@ -1,16 +1,14 @@
 """What the cards of the signals say, in the only engine that runs them."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
 
 from api.cli.monitor import words
-from tests.browser.station import Service
 from tests.support.monitor import AT, signal
 
 pytestmark = pytest.mark.browser
@@ -18,14 +16,6 @@ pytestmark = pytest.mark.browser
 PENDING = {"error": "GPS_LOST", "since_at": AT, "needs_s": 15.0}
 STALE = signal("temperature", 30.0, error="STALE_DATA", stale=True)
 NEVER = signal("temperature", None, received_at=None)
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Iterator[Page]:
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 def run(page: Page, script: str, argument: object) -> Any:  # noqa: ANN401 - what it returns

@@ -11,7 +11,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.robots import many_signals_robot
-from tests.browser.station import Complaints, Service, free_port
+from tests.browser.station import Complaints, Service, serving
 
 pytestmark = pytest.mark.browser
 
@@ -44,13 +44,8 @@ def height(shown: Locator) -> float:
 @pytest.fixture(scope="module")
 def many(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("many")
-    with (folder / "output").open("w+b") as output:
-        service = Service(free_port(), output, many_signals_robot(folder))
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
+    with serving(folder, many_signals_robot(folder)) as service:
+        yield service
 
 
 def opened(browser: Browser, service: Service, complaints: Complaints) -> Page:

@@ -1,6 +1,5 @@
 """The page says of the state of the robot what the terminal says, case by case."""
 
-from collections.abc import Iterator
 from datetime import datetime
 from typing import Any
 
@@ -8,10 +7,9 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
 
 from api.cli.monitor import sentence, words
-from tests.browser.station import Service
 from tests.support.monitor import AT, frame, robot, view
 from tests.support.sentence_cases import CASES, STORAGE, Case, combinations
 
@@ -26,14 +24,6 @@ SAY = """async (frames) => {
         return [word, level, text, more, said.standstillWords(state)];
     });
 }"""
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Iterator[Page]:
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

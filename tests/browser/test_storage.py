@@ -11,7 +11,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, Route, expect
 
-from tests.browser.station import Complaints, Service, free_port
+from tests.browser.station import Complaints, Service, serving
 
 pytestmark = pytest.mark.browser
 
@@ -30,14 +30,8 @@ def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servic
     folder = tmp_path_factory.mktemp("kept")
     robot = folder / "robot.yaml"
     robot.write_text("signals: {estop: {recovery: acknowledge}}\n")
-    with (folder / "output").open("w+b") as output:
-        arguments = ("--robot", str(robot))
-        service = Service(free_port(), output, arguments, str(folder / "data"))
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
+    with serving(folder, ("--robot", str(robot)), keeps=True) as service:
+        yield service
 
 
 @pytest.fixture

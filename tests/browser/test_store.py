@@ -1,15 +1,12 @@
 """The fold of the stream, the reference client, in the only engine that runs it: the browser."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
-
-from tests.browser.station import Service
+from playwright.sync_api import Page
 
 pytestmark = pytest.mark.browser
 
@@ -17,14 +14,6 @@ AT = "2026-01-02T03:04:05.000Z"
 ACTIVE = {"target": None, "actual": {"state": "active", "mode": "FAST"}, "converged": True}
 LATER = "2026-01-02T03:04:09.000Z"
 DEVIATING = {**ACTIVE, "converged": False}
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Iterator[Page]:
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 def fold(page: Page, *messages: dict[str, Any]) -> dict[str, Any]:

@@ -15,12 +15,12 @@ from tests.browser.driving import (
     expect_running,
     hold,
     open_sheet,
-    sentence,
     sheet,
     start,
     strip,
     words,
 )
+from tests.browser.places import sentence
 from tests.browser.station import Complaints, Service
 
 pytestmark = pytest.mark.browser

@@ -14,7 +14,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.robots import large_robot
-from tests.browser.station import Complaints, Service, free_port
+from tests.browser.station import Complaints, Service, serving
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -29,13 +29,8 @@ REPLAYED_MS = 60_000
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """A service that records what happens in a folder."""
     folder = tmp_path_factory.mktemp("recorded")
-    with (folder / "output").open("w+b") as output:
-        service = Service(free_port(), output, data=str(folder / "data"))
-        try:
-            service.start()
-            yield service
-        finally:
-            service.kill()
+    with serving(folder, keeps=True) as service:
+        yield service
 
 
 @pytest.fixture
@@ -323,9 +318,7 @@ def test_from_an_error_one_gets_to_the_moment_in_which_it_was_raised(
 def test_a_lane_of_a_part_stays_when_it_is_kept(
     browser: "Browser", tmp_path: Path, complaints: Complaints
 ) -> None:
-    with (tmp_path / "output").open("w+b") as output:
-        service = Service(free_port(), output, large_robot(tmp_path))
-        service.start()
+    with serving(tmp_path, large_robot(tmp_path)) as service:
         page = browser.new_page(viewport={"width": 1440, "height": 900})
         complaints.watch(page)
         page.goto(service.url)
@@ -342,7 +335,6 @@ def test_a_lane_of_a_part_stays_when_it_is_kept(
         expect(names.get_by_role("button", name="node_042", exact=True)).to_have_count(0)
         assert complaints.messages == []
         page.close()
-        service.kill()
 
 
 def test_the_events_of_the_span_are_saved_as_json_lines(page: Page, robot: Service) -> None:

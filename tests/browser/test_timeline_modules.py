@@ -6,9 +6,7 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Page
-
-from tests.browser.station import Service
+from playwright.sync_api import Page
 
 pytestmark = pytest.mark.browser
 
@@ -38,14 +36,6 @@ let seed = SEED;
 const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
 const upTo = (n) => Math.floor(random() * n);
 """
-
-
-@pytest.fixture(scope="module")
-def page(browser: Browser, running_service: Service) -> Any:  # noqa: ANN401 - a generator
-    page = browser.new_page()
-    page.goto(running_service.url)
-    yield page
-    page.close()
 
 
 def run(page: Page, script: str) -> Any:  # noqa: ANN401 - whatever the script returns

@@ -9,6 +9,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from api.access_token import TOKEN_VARIABLE
+from tests.browser.places import sentence
 from tests.support.process import ServiceProcess, service
 
 pytestmark = pytest.mark.browser
@@ -36,10 +37,6 @@ def page(browser: Browser, guarded: ServiceProcess) -> Iterator[Page]:
 
 def field(page: Page) -> Locator:
     return page.get_by_label("Token", exact=True)
-
-
-def sentence(page: Page) -> Locator:
-    return page.get_by_role("heading", level=1)
 
 
 def give(page: Page, token: str) -> None:

@@ -10,16 +10,13 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Locator, Page, expect
 
+from tests.browser.places import sentence
 from tests.browser.station import Complaints, Service
 
 pytestmark = pytest.mark.browser
 
 SIMULATED_MS = 30_000
 """The first simulation starts a process of its own."""
-
-
-def sentence(page: Page) -> Locator:
-    return page.get_by_role("heading", level=1)
 
 
 def drawer(page: Page) -> Locator:

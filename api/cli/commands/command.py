@@ -62,6 +62,18 @@ def span(text: str) -> float:
         raise argparse.ArgumentTypeError(message) from None
 
 
+def add_shelving_time(parser: argparse.ArgumentParser) -> None:
+    """Add `--for`: how long errors are not announced, in s as `for_s`."""
+    parser.add_argument(
+        "--for",
+        dest="for_s",
+        metavar="TIME",
+        type=span,
+        default=600.0,
+        help="how long, such as 90s, 10min or 8h; default: 10min",
+    )
+
+
 def default_url() -> str:
     """Return the default URL of the service."""
     return os.environ.get("PILOTHOUSE_URL") or DEFAULT_URL

@@ -5,7 +5,7 @@ import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from api.cli.commands.command import Command, add_format, add_url, span, with_service
+from api.cli.commands.command import Command, add_format, add_shelving_time, add_url, with_service
 from api.cli.error_lines import error_lines, is_on
 from api.cli.error_requests import acknowledge, open_errors, shelve, unshelve
 from api.client.outcomes import Outcome
@@ -36,14 +36,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--shelve", metavar="NAME", action="append", default=[], help="shelve an error"
     )
-    parser.add_argument(
-        "--for",
-        dest="for_s",
-        metavar="TIME",
-        type=span,
-        default=600.0,
-        help="how long, such as 90s, 10min or 8h; default: 10min",
-    )
+    add_shelving_time(parser)
     parser.add_argument("--reason", default="", help="why it is shelved; needed")
     parser.add_argument(
         "--unshelve", metavar="NAME", action="append", default=[], help="announce an error again"

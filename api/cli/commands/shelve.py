@@ -3,7 +3,14 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from api.cli.commands.command import Command, add_format, add_url, say_json, span, with_service
+from api.cli.commands.command import (
+    Command,
+    add_format,
+    add_shelving_time,
+    add_url,
+    say_json,
+    with_service,
+)
 from api.cli.completers import open_error_names
 from api.cli.error_requests import shelve, unshelve
 from api.client.outcomes import Outcome
@@ -29,14 +36,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "names", metavar="NAME", nargs="+", help="such as ESTOP or lidar.SILENT"
     )
     open_error_names(names)
-    parser.add_argument(
-        "--for",
-        dest="for_s",
-        metavar="TIME",
-        type=span,
-        default=600.0,
-        help="how long, such as 90s, 10min or 8h; default: 10min",
-    )
+    add_shelving_time(parser)
     parser.add_argument("--reason", help="why; needed, except with --end")
     parser.add_argument("--end", action="store_true", help="announce them again")
     add_format(parser, "json: the errors")
