@@ -60,6 +60,7 @@ class ServiceClient:
             NoAnswerError: The service did not answer.
         """
         name = part.lstrip("/")
+        problem: Json = {}
         for kind in _KINDS:
             path = f"/{kind}/{quote(name)}"
             try:
