@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from domain.computers import ComputerName, PeerStop, StopId
 from domain.identifiers import GoalId
 from domain.lifecycle import Transition
 from domain.parameters import Parameters
@@ -77,5 +78,38 @@ class PreemptGoal:
     goal: GoalId
 
 
+@dataclass(frozen=True, slots=True)
+class TellStops:
+    """Tell every other computer of the robot which stops are engaged on this one: all of them."""
+
+    stops: tuple[PeerStop, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AskRelease:
+    """Ask another computer to release stops of its own, which a person saw and released here."""
+
+    computer: ComputerName
+    stops: tuple[StopId, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerOrder:
+    """Answer a command of the supervisor; the number of the request is the supervisor's."""
+
+    request: int
+    node: PartName
+    accepted: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ActAlone:
+    """Tell the link whether this device acts on its own, as `offline` of the robot file says."""
+
+    autonomous: bool
+
+
 NodeCommand: TypeAlias = AskTransition | AskParameters | AskFacts
-Command: TypeAlias = NodeCommand | Drive | SendGoal | PreemptGoal
+LinkCommand: TypeAlias = TellStops | AskRelease | AnswerOrder | ActAlone
+Command: TypeAlias = NodeCommand | Drive | SendGoal | PreemptGoal | LinkCommand

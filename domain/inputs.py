@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from domain.actor import NOBODY, Actor
+from domain.commands import NodeCommand
+from domain.computers import ComputerName, DeviceState, Incarnation, PeerStop, Session, StopId
 from domain.findings import Fact
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
@@ -174,6 +176,63 @@ class WriteRecord:
     address: str
     """Host and port of the client."""
     actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class DeviceStatus:
+    """How the supervisor's connection to a device is; only a change is reported."""
+
+    device: ComputerName
+    state: DeviceState
+    reason: str = ""
+    """Why it is not connected, in words; empty: it is."""
+    incarnation: Incarnation | None = None
+    """The run of the device that is, or was last, dealt with; None: none was yet."""
+    session: Session | None = None
+    version: str | None = None
+    """Of Pilothouse there; None: not known."""
+    autonomous: bool = False
+    """It acts on its own, as `offline` of the robot file says."""
+    refused: str = ""
+    """Why another process of this name is refused; empty: there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class SupervisorStatus:
+    """How a device's connection to its supervisor is; only a change is reported."""
+
+    state: DeviceState
+    reason: str = ""
+    """Why it is not connected, in words; empty: it is."""
+    incarnation: Incarnation | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PeerStops:
+    """All emergency stops that are engaged on another computer of the robot, as it says itself.
+
+    What it says holds until it says something else, also while it cannot be heard.
+    """
+
+    computer: ComputerName
+    stops: tuple[PeerStop, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StopsReleased:
+    """Somebody at another computer releases stops that are engaged on this one."""
+
+    stops: tuple[StopId, ...]
+    """Those that its person saw; any other stays engaged."""
+    computer: ComputerName
+
+
+@dataclass(frozen=True, slots=True)
+class OrderReceived:
+    """The supervisor has a node of this device do something."""
+
+    command: NodeCommand
+    """With the supervisor's number of the request, which the answer repeats."""
 
 
 # --- requests ------------------------------------------------------------------------------------
@@ -393,5 +452,10 @@ Input: TypeAlias = (
     | ShelveRequest
     | UnshelveRequest
     | DriveRequest
+    | DeviceStatus
+    | SupervisorStatus
+    | PeerStops
+    | StopsReleased
+    | OrderReceived
     | Restored
 )

@@ -7,16 +7,21 @@ An adapter passes every fact to `deliver` on the event loop's thread. It does no
 from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
-from domain.commands import Drive, NodeCommand
+from domain.commands import Drive, LinkCommand, NodeCommand
 from domain.inputs import (
     BackendStatus,
+    DeviceStatus,
     DriveStatus,
     ErrorReport,
     NodeAnswer,
     NodeReport,
+    OrderReceived,
+    PeerStops,
     Readings,
     ReportBacklog,
     SourceFault,
+    StopsReleased,
+    SupervisorStatus,
     VehicleReport,
 )
 
@@ -30,6 +35,11 @@ BackendMessage: TypeAlias = (
     | ErrorReport
     | VehicleReport
     | DriveStatus
+    | DeviceStatus
+    | SupervisorStatus
+    | PeerStops
+    | StopsReleased
+    | OrderReceived
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
@@ -82,9 +92,22 @@ class SignalSource(Adapter, Protocol):
     """A source of signal readings; it delivers `Readings`, or `SourceFault` if it has none."""
 
 
-class RobotBackend(Adapter, Protocol):
-    """Nodes, vehicle and signals behind one port, for the supervisor."""
+class ComputersLink(Adapter, Protocol):
+    """The other computers of the robot; `service/link` has both ends of it.
 
-    def send(self, command: NodeCommand | Drive, /) -> None:
-        """Pass a command on to a node or to the vehicle; return at once. Never raises."""
+    It delivers what the core of this computer must know of the others: on the supervisor
+    `DeviceStatus`, on a device `SupervisorStatus` and `OrderReceived`, on both `PeerStops` and
+    `StopsReleased`.
+    """
+
+    def send(self, command: LinkCommand, /) -> None:
+        """Tell other computers, and return at once. Never raises."""
+        ...
+
+
+class RobotBackend(Adapter, Protocol):
+    """Nodes, vehicle, signals and other computers behind one port, for the supervisor."""
+
+    def send(self, command: NodeCommand | Drive | LinkCommand, /) -> None:
+        """Pass a command on to a node, the vehicle or the link; return at once. Never raises."""
         ...

@@ -10,13 +10,17 @@ from itertools import zip_longest
 from typing import TypeAlias
 
 from domain.commands import (
+    ActAlone,
+    AnswerOrder,
     AskFacts,
     AskParameters,
+    AskRelease,
     AskTransition,
     Command,
     Drive,
     PreemptGoal,
     SendGoal,
+    TellStops,
 )
 from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
@@ -246,6 +250,14 @@ def _command_words(command: Command) -> str:
             return f"{node} is asked for its state"
         case SendGoal(goal=goal) | PreemptGoal(goal=goal):
             return f"{type(command).__name__} {goal}"
+        case TellStops(stops=stops):
+            return f"other computers are told of {len(stops)} stops"
+        case AskRelease(computer=computer, stops=ids):
+            return f"{computer} is asked to release {', '.join(ids)}"
+        case AnswerOrder(node=node, accepted=accepted):
+            return f"the supervisor is told that {node} {'accepts' if accepted else 'rejects'}"
+        case ActAlone(autonomous=autonomous):
+            return f"this device {'acts' if autonomous else 'no longer acts'} on its own"
 
 
 def _kept_words(keeping: Keeping) -> str:

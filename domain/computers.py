@@ -1,0 +1,45 @@
+"""The computers of a robot: what tells them and their runs apart, and what one knows of another."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NewType
+
+from domain.timebase import Instant
+
+ComputerName = NewType("ComputerName", str)
+"""`supervisor`, or the name of a device in the robot file."""
+
+Incarnation = NewType("Incarnation", str)
+"""One run of a process: 32 hexadecimal digits, random."""
+
+Session = NewType("Session", str)
+"""32 hexadecimal digits, random; a device carries out only commands of its present session."""
+
+StopId = NewType("StopId", str)
+"""One pressing of an emergency stop on one computer; never used twice."""
+
+SUPERVISOR = ComputerName("supervisor")
+
+
+class DeviceState(StrEnum):
+    """How the connection to another computer is."""
+
+    NEVER_SEEN = "never_seen"
+    CONNECTED = "connected"
+    LATE = "late"
+    """Nothing heard for `late_s`; commands still go out."""
+    LOST = "lost"
+    """Nothing heard, or nothing that we said, for `lost_s`; nothing is commanded."""
+    CONFLICT = "conflict"
+    """Whoever answers by this name must not be dealt with."""
+
+
+@dataclass(frozen=True, slots=True)
+class PeerStop:
+    """An emergency stop that is engaged on another computer."""
+
+    id: StopId
+    by: str
+    reason: str
+    since: Instant
+    """On the clock of this computer."""

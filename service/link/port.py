@@ -1,0 +1,41 @@
+"""The port of the link: carries messages between the computers of one robot, as bytes.
+
+`tests/conformance/test_link.py` specifies what an adapter must do.
+"""
+
+from collections.abc import Callable
+from typing import Protocol, TypeAlias
+
+from domain.computers import ComputerName
+
+MAX_MESSAGE_BYTES = 2**20
+"""Largest message; a longer one is not sent, and not taken in."""
+MAX_MESSAGES_PER_S = 2_000
+"""Messages of one computer that are taken in; of more, the rest is dropped and counted."""
+
+DeliverMessage: TypeAlias = Callable[[ComputerName, bytes], None]
+"""Called on the event loop's thread with the sender, as the transport knows it, and its message."""
+
+
+class Link(Protocol):
+    """Carries messages to and from the other computers of the robot.
+
+    Messages of one kind from one computer to another arrive in their order, or not at all; some may
+    arrive late, also after the connection was cut, or twice.
+    """
+
+    async def run(self, deliver: DeliverMessage) -> None:
+        """Deliver messages until cancelled; a connection that fails is tried again for ever."""
+        ...
+
+    def send(self, to: ComputerName, message: bytes, *, may_be_lost: bool) -> None:
+        """Send a message, and return at once. Never raises for a computer that is not there.
+
+        Called on the event loop's thread.
+
+        Args:
+            to: The computer that it is for.
+            message: At most `MAX_MESSAGE_BYTES`; a longer one is dropped and counted.
+            may_be_lost: It is worthless once a later one was sent: never delayed to send it again.
+        """
+        ...
