@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from domain.commands import Drive, LinkCommand, NodeCommand
+from domain.commands import Drive, NodeCommand
 from domain.state_and_mode import PartName
-from service.ports import Adapter, ComputersLink, Deliver, NodeBackend, SignalSource, VehicleBackend
+from service.ports import Adapter, Deliver, NodeBackend, SignalSource, VehicleBackend
 from service.running import run_forever
 
 
@@ -19,7 +19,6 @@ class CompositeRobot:
         nodes: Mapping[PartName, NodeBackend],
         vehicle: VehicleBackend | None = None,
         signals: Sequence[SignalSource] = (),
-        link: ComputersLink | None = None,
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -27,15 +26,12 @@ class CompositeRobot:
             nodes: The backend of each node.
             vehicle: None: the robot has no vehicle, and drive commands are discarded.
             signals: The sources of readings.
-            link: The other computers; None: the robot has one computer.
         """
         self._nodes = nodes
         self._vehicle = vehicle
-        self._link = link
         vehicles = () if vehicle is None else (vehicle,)
-        links = () if link is None else (link,)
         self._adapters: dict[int, Adapter] = {
-            id(adapter): adapter for adapter in (*nodes.values(), *vehicles, *signals, *links)
+            id(adapter): adapter for adapter in (*nodes.values(), *vehicles, *signals)
         }
 
     async def run(self, deliver: Deliver) -> None:
@@ -49,13 +45,10 @@ class CompositeRobot:
             work[f"{type(adapter).__name__} {number}"] = adapter.run(deliver)
         await run_forever(work)
 
-    def send(self, command: NodeCommand | Drive | LinkCommand, /) -> None:
+    def send(self, command: NodeCommand | Drive, /) -> None:
         """Pass a command on; a command for a node without a backend gets no answer."""
         if isinstance(command, Drive):
             if self._vehicle is not None:
                 self._vehicle.send(command)
-        elif isinstance(command, LinkCommand):
-            if self._link is not None:
-                self._link.send(command)
         elif command.node in self._nodes:
             self._nodes[command.node].send(command)

@@ -106,8 +106,8 @@ class ComputersLink(Adapter, Protocol):
 
 
 class RobotBackend(Adapter, Protocol):
-    """Nodes, vehicle, signals and other computers behind one port, for the supervisor."""
+    """Nodes, vehicle and signals behind one port, for the supervisor."""
 
-    def send(self, command: NodeCommand | Drive | LinkCommand, /) -> None:
-        """Pass a command on to a node, the vehicle or the link; return at once. Never raises."""
+    def send(self, command: NodeCommand | Drive, /) -> None:
+        """Pass a command on to a node or to the vehicle; return at once. Never raises."""
         ...

@@ -9,7 +9,7 @@ from contextlib import suppress
 from functools import partial
 
 from domain.actor import SERVICE
-from domain.commands import PreemptGoal, SendGoal
+from domain.commands import LinkCommand, PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
 from domain.inputs import HoldRequest, Input, ServiceStall
@@ -28,7 +28,7 @@ from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
 from service.keeper import NO_STORES, Checkpoint, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
-from service.ports import RobotBackend
+from service.ports import ComputersLink, RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
@@ -51,6 +51,9 @@ class Supervisor:
 
     sources: Sequence[SourceStatus] = ()
     """How the sources of its signals are doing; set by who makes them."""
+
+    link: ComputersLink | None = None
+    """The other computers of the robot, set by who makes it; None: there are none."""
 
     def __init__(
         self,
@@ -156,6 +159,8 @@ class Supervisor:
             "log": log_node_incidents(self.events),
             "tick": self.publisher.run(),
         }
+        if self.link is not None:
+            work["link"] = self.link.run(self.deliver)
         if self._keeper is not None:
             work["keeper"] = self._keeper.run()
         await run_forever(work)
@@ -184,8 +189,11 @@ class Supervisor:
         """
         outputs = step.outputs
         for command in outputs.commands:
+            if isinstance(command, LinkCommand):
+                if self.link is not None:
+                    self.link.send(command)
             # Goals are for the navigation on board; the rest is for nodes and the vehicle.
-            if not isinstance(command, SendGoal | PreemptGoal):
+            elif not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
         if self._keeper is not None:
             self._keeper.keep_with_step(step.at)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from domain.commands import Command, PreemptGoal, SendGoal
+from domain.commands import Command, Drive, NodeCommand
 from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, Input, TimePassed
@@ -48,7 +48,7 @@ class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
         outputs = self.onboard.handle(given, self.now)
         self.events += outputs.events
         for command in outputs.commands:
-            assert not isinstance(command, SendGoal | PreemptGoal), "goals stay on board"
+            assert isinstance(command, NodeCommand | Drive), "goals stay on board"
             self.commands.append(command)
             self.robot.handle(command, self.now)
         return outputs

@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 
 from domain.actor import Actor
-from domain.commands import PreemptGoal, SendGoal
+from domain.commands import Drive, NodeCommand
 from domain.errors import PilothouseError
 from domain.inputs import (
     BackendStatus,
@@ -96,7 +96,7 @@ class RecordedRobot(CoreRobot):
         self.events += outputs.events
         for command in outputs.commands:
             self.commands.append(command)
-            assert not isinstance(command, SendGoal | PreemptGoal), "goals stay on board"
+            assert isinstance(command, NodeCommand | Drive), "goals stay on board"
             self.robot.handle(command, self.now)
         return outputs
 
