@@ -13,6 +13,7 @@ from domain.inputs import (
     DeviceStatus,
     DriveStatus,
     ErrorReport,
+    Input,
     NodeAnswer,
     NodeReport,
     OrderReceived,
@@ -102,6 +103,13 @@ class ComputersLink(Adapter, Protocol):
 
     def send(self, command: LinkCommand, /) -> None:
         """Tell other computers, and return at once. Never raises."""
+        ...
+
+    def note(self, given: Input, /) -> None:
+        """Learn what the core of this computer took in, after what followed from it was done.
+
+        A device tells the supervisor what that says of its nodes and signals.
+        """
         ...
 
 
