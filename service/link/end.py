@@ -97,8 +97,13 @@ class LinkEnd:
     def _carry_out(self, outputs: LinkOutputs) -> None:
         now = self._clock.now()
         for to, message in outputs.sendings:
+            try:
+                text = encode(message)
+            except CodecError as error:
+                log.warning("a message for %s is not sent: %s", to, error)
+                continue
             self.status.note_sent(to, message, now)
-            self._link.send(to, encode(message), may_be_lost=isinstance(message, Beat))
+            self._link.send(to, text, may_be_lost=isinstance(message, Beat))
         self._waiting.extend(outputs.inputs)
         self._alarm.check()
 
