@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
 from domain.commands import Drive, LinkCommand, NodeCommand
+from domain.computers import ComputerName, Connection
 from domain.inputs import (
     BackendStatus,
     DeviceStatus,
@@ -103,6 +104,10 @@ class ComputersLink(Adapter, Protocol):
 
     def send(self, command: LinkCommand, /) -> None:
         """Tell other computers, and return at once. Never raises."""
+        ...
+
+    def connection(self, computer: ComputerName, /) -> Connection:
+        """Return how the connection to another computer is doing."""
         ...
 
     def note(self, given: Input, /) -> None:

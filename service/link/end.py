@@ -3,10 +3,11 @@
 import asyncio
 import logging
 from collections import deque
+from dataclasses import replace
 from typing import Protocol, cast
 
 from domain.commands import LinkCommand, NodeCommand
-from domain.computers import ComputerName
+from domain.computers import ComputerName, Connection
 from domain.inputs import BackendStatus, Input, ReportBacklog
 from domain.link.messages import Beat, Message
 from domain.link.outputs import LinkOutputs
@@ -56,7 +57,7 @@ class LinkEnd:
             clock: Of the service.
             status: Measures the connections.
         """
-        self.status = status
+        self._status = status
         self._machine = machine
         self._link = link
         self._clock = clock
@@ -83,15 +84,21 @@ class LinkEnd:
         """
         self._carry_out(self._machine.tell(command, self._clock.now()))
 
+    def connection(self, computer: ComputerName) -> Connection:
+        """Return how the connection to another computer is doing."""
+        measured = self._status.of(computer, self._clock.now())
+        dropped = self._link.counts().received.get(computer, 0)
+        return replace(measured, dropped=measured.dropped + dropped)
+
     def _hear(self, sender: ComputerName, text: bytes) -> None:
         try:
             message = decode(text)
         except CodecError as error:
-            self.status.note_unreadable(sender)
+            self._status.note_unreadable(sender)
             log.debug("%s sent what is no message: %s", sender, error)
             return
         now = self._clock.now()
-        self.status.note_heard(sender, message, now)
+        self._status.note_heard(sender, message, now)
         self._carry_out(self._machine.hear(sender, message, now))
 
     def _carry_out(self, outputs: LinkOutputs) -> None:
@@ -102,7 +109,7 @@ class LinkEnd:
             except CodecError as error:
                 log.warning("a message for %s is not sent: %s", to, error)
                 continue
-            self.status.note_sent(to, message, now)
+            self._status.note_sent(to, message, now)
             self._link.send(to, text, may_be_lost=isinstance(message, Beat))
         self._waiting.extend(outputs.inputs)
         self._alarm.check()

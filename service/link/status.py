@@ -2,9 +2,8 @@
 
 from collections import deque
 from collections.abc import Iterable
-from dataclasses import dataclass
 
-from domain.computers import ComputerName, Incarnation
+from domain.computers import ComputerName, Connection, Incarnation
 from domain.link.messages import Beat, Message
 from domain.timebase import Duration, Instant, seconds
 
@@ -14,21 +13,6 @@ _MOST_BEATS = 1_000
 """Beats of a window that are remembered; a computer that sends more is not measured."""
 _MOST_ECHOES = 64
 """Own beats whose echo is waited for; at ten in a second, that is longer than `lost_s`."""
-
-
-@dataclass(frozen=True, slots=True)
-class Connection:
-    """How the connection to one other computer is doing."""
-
-    heard_at: Instant | None = None
-    """When a beat of it last came; None: none has come since the start."""
-    round_trip: Duration | None = None
-    """From sending a beat to hearing its echo, which waits for the next beat of the other computer;
-    None: no echo has come."""
-    lost_share: float | None = None
-    """Share of the beats of the last `WINDOW` that did not come; None: none has come so far."""
-    unreadable: int = 0
-    """Messages that were no messages; they were dropped."""
 
 
 class LinkStatus:

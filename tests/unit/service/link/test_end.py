@@ -74,7 +74,7 @@ async def test_what_is_no_message_is_counted_and_hurts_nobody(here: RunningEnd) 
     here.link.hear(THERE, BEAT)
 
     assert here.machine.heard == [(THERE, BEAT)]
-    assert here.end.status.of(THERE, here.clock.now()).unreadable == 1
+    assert here.end.connection(THERE).dropped == 1
 
 
 async def test_a_command_is_sent_at_once_but_the_core_is_told_in_a_later_turn(
@@ -176,3 +176,11 @@ async def test_messages_and_times_that_change_nothing_deliver_nothing(here: Runn
     await here.clock.advance(1.0)
 
     assert here.delivered == []
+
+
+async def test_what_the_link_dropped_is_counted_with_what_cannot_be_read(here: RunningEnd) -> None:
+    here.link.dropped = {THERE: 3}
+    assert here.link.deliver is not None
+    here.link.deliver(THERE, b"")
+
+    assert here.end.connection(THERE).dropped == 4

@@ -1,9 +1,9 @@
 """What is known of a connection follows from the messages that pass."""
 
-from domain.computers import SUPERVISOR, ComputerName, Incarnation
+from domain.computers import SUPERVISOR, ComputerName, Connection, Incarnation
 from domain.link.messages import Beat, Terms
 from domain.timebase import Instant, seconds
-from service.link.status import Connection, LinkStatus
+from service.link.status import LinkStatus
 
 ARM = ComputerName("arm")
 OURS = Incarnation("0" * 32)
@@ -81,7 +81,7 @@ def test_what_cannot_be_read_is_counted() -> None:
     status = LinkStatus([ARM], BEAT)
     status.note_unreadable(ARM)
 
-    assert status.of(ARM, at(0)).unreadable == 1
+    assert status.of(ARM, at(0)).dropped == 1
 
 
 def test_a_computer_that_does_not_belong_to_the_robot_is_not_measured() -> None:
