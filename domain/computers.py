@@ -34,12 +34,29 @@ class DeviceState(StrEnum):
     """Whoever answers by this name must not be dealt with."""
 
 
+def computer_words(computer: ComputerName) -> str:
+    """Return a computer in words, such as "device arm"."""
+    return "the supervisor" if computer == SUPERVISOR else f"device {computer}"
+
+
 @dataclass(frozen=True, slots=True)
 class PeerStop:
-    """An emergency stop that is engaged on another computer."""
+    """An emergency stop that one computer tells another of: it is engaged on the one that tells."""
 
     id: StopId
     by: str
     reason: str
     since: Instant
     """On the clock of this computer."""
+
+
+@dataclass(frozen=True, slots=True)
+class StopView:
+    """An emergency stop that is engaged, and where."""
+
+    id: StopId
+    computer: ComputerName | None
+    """None: this one."""
+    by: str
+    reason: str
+    since: Instant
