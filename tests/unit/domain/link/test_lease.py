@@ -60,7 +60,7 @@ def test_who_is_heard_but_does_not_hear_us_is_late_and_lost_just_the_same() -> N
         told.hear(tenth / 10, echo_of=0)
 
     assert told.lease.is_late
-    assert told.lease.why_late(seconds(1.4)) == "has not echoed anything for 1.3 s"
+    assert told.lease.why_late(seconds(1.4)) == "has not heard this computer for 1.3 s"
     assert told.ends(1.5)
     assert told.lease.why_lost(seconds(1.5)) == "does not hear this computer"
 
