@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
+from domain.devices.settings import DeviceSettings, ownership_text
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
 from domain.health.checkpoints import CheckpointSettings
@@ -22,6 +23,8 @@ from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
+from service.files.device_faults import faults_of_devices
+from service.files.devices_block import DevicesBlock, device_settings
 from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.includes import (
     INCLUDE,
@@ -32,12 +35,13 @@ from service.files.includes import (
     with_includes,
 )
 from service.files.limits_block import LimitsBlock
+from service.files.link_block import LinkBlock
 from service.files.monitor_templates import Parameter, TemplateName
 from service.files.parameter_file import scalar_value
 from service.files.robot_settings import ChangesBlock, NodeBlock, RulesBlock, SignalsBlock
 from service.files.ros2_block import Ros2Block
 from service.files.settings_block import SettingsBlock, bare_names
-from service.files.signal_faults import Fault, faults_of_signals
+from service.files.signal_faults import faults_of_signals
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
@@ -46,6 +50,9 @@ Included: TypeAlias = (
     | Annotated[dict[TemplateName, dict[str, Parameter]], Field(min_length=1, max_length=1)]
 )
 """A template, and its parameters if there are any."""
+
+Fault: TypeAlias = tuple[Keys, str, str]
+"""The keys that lead to a fault, its code and its message."""
 
 _WORDS = {"extra_forbidden": "unknown key", "model_type": "expected keys below"}
 
@@ -91,6 +98,11 @@ class RobotSettings(SettingsBlock):
     """Limits on what clients may request."""
     ros2: Ros2Block = Ros2Block()
     """ROS 2 topics of the robot. Without effect for a simulated robot."""
+    devices: DevicesBlock = Field(default_factory=dict)
+    """Further computers of the robot, by name, each with the parts that it alone commands. Default:
+    there are none. Without effect in simulations."""
+    link: LinkBlock = LinkBlock()
+    """How these computers reach each other. Without effect in simulations."""
     start_task: StartTaskBlock | None = None
     """A task that is submitted when the service starts. Not allowed in simulations, which do not
     read files."""
@@ -130,6 +142,14 @@ class RobotSettings(SettingsBlock):
             for name, node in self.nodes.items()
             if node.checkpoints is not None
         }
+
+    def to_device_settings(self, model: SmhModel) -> tuple[DeviceSettings, ...]:
+        """Return the devices, and which nodes and signals of the model each of them owns."""
+        return device_settings(self.devices, self.signals, model)
+
+    def ownership_text(self, model: SmhModel) -> str:
+        """Return what all computers must agree on besides the model, as one canonical text."""
+        return ownership_text(self.to_device_settings(model), self.link.late, self.link.lost)
 
     def to_vehicle_limits(self) -> VehicleLimits:
         """Return the limits of the vehicle."""
@@ -202,8 +222,8 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
     try:
         settings.to_signal_settings()
     except InvalidValueError as error:
-        keys = ("signals", *error.pointer.split("/"))
-        raise InvalidValueError(error.message, _pointer(*merged.place_of(keys))) from error
+        at = ("signals", *error.pointer.split("/"))
+        raise InvalidValueError(error.message, _pointer(*merged.place_of(at))) from error
     for name in settings.nodes:
         if name not in model.nodes:
             raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
@@ -263,6 +283,9 @@ def _faults(settings: RobotSettings, model: SmhModel) -> Iterator[Fault]:
     kinds = {signal.spec.name: signal.spec.kind for signal in settings.to_signal_settings()}
     for keys, code, message in settings.ros2.faults(kinds, model):
         yield ("ros2", *keys), code, message
+    of_devices = faults_of_devices(settings.devices, settings.signals, model, settings.link.lost_s)
+    for place, code, message in of_devices:
+        yield ("devices", *place), code, message
     yield from _faults_of_two_sources(settings)
 
 

@@ -36,6 +36,39 @@ ROBOT_FILES = (
         "(20,000 for `percentile`). Windows of posted readings that do are unknown at run time.",
         "Shorten the window, or read the source less often.",
     ),
+    FindingCode(
+        "DEVICE_NAME",
+        ERROR,
+        "A device is named `supervisor`, which is the name of the computer that supervises the "
+        "devices, or like a part.",
+        "Give it another name.",
+    ),
+    FindingCode(
+        "OWNED_TWICE",
+        ERROR,
+        "Two devices own a node, maybe through systems, or read a signal. Every node has one "
+        "owner, who alone commands it.",
+        "Name it in one of them; the message names the other.",
+    ),
+    FindingCode(
+        "NOT_OWN",
+        ERROR,
+        "A device is to command a part on its own that is not all its own, or a mode with guards "
+        "that it cannot judge alone.",
+        "Name its own parts. What the guards of the mode rest on must be its own, too.",
+    ),
+    FindingCode(
+        "OFFLINE_TOO_SOON",
+        ERROR,
+        "A device would act on its own before its supervisor counts as lost.",
+        "Let `after_s` be at least `lost_s` of `link`.",
+    ),
+    FindingCode(
+        "VEHICLE_ELSEWHERE",
+        ERROR,
+        "A device is to have the vehicle or its tasks. These are the supervisor's.",
+        "Run the supervisor on the computer that drives.",
+    ),
 )
 
 WAYPOINT_FILES = (

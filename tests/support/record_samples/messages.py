@@ -14,12 +14,12 @@ from domain.inputs import (
     SourceFault,
 )
 from domain.lifecycle import LifecycleState, Transition
-from domain.link.messages import Beat, EngagedStop, NodeOrder, Refused, Report, Terms
+from domain.link.messages import Beat, EngagedStop, Message, NodeOrder, Refused, Report, Terms
 from domain.state_and_mode import ModeName, PartName
 
 _TERMS = Terms(model="1b" * 32, ownership="2c" * 32, protocol=1, version="0.9.1")
 
-MESSAGES: Mapping[str, tuple[object, ...]] = {
+MESSAGES: Mapping[str, tuple[Message, ...]] = {
     "beat": (
         Beat(
             sender=ComputerName("arm"),
