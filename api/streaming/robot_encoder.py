@@ -8,10 +8,12 @@ from pydantic_core import to_json
 from api.http.error_text import error_text
 from api.http.part_text import part_text
 from api.http.schemas.base import rfc3339, timestamp
+from api.http.schemas.devices import DeviceJson
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
 from api.http.schemas.reactions import ReactionJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 from domain.actor import Actor
+from domain.devices.device_view import DeviceView
 from domain.events.event import RecordedEvent
 from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
@@ -52,6 +54,11 @@ class RobotEncoder:
         self.errors = MemberCache[ErrorView](lambda view: error_text(view, since.text))
         self.reactions = MemberCache[ReactionView](
             lambda view: ReactionJson.of(view, clock).model_dump_json()
+        )
+        self.devices = MemberCache[DeviceView](
+            lambda view: DeviceJson.of(
+                view, supervisor.connection(view.device), clock
+            ).model_dump_json()
         )
         self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
         self._moments = LatestCache[Instant](lambda at: timestamp(clock, at))

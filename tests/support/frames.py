@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from domain.actor import Actor
+from domain.devices.device_view import DeviceView
 from domain.events.event import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
 from domain.reactions.reaction_view import ReactionView
@@ -105,6 +106,7 @@ def frame(
     holds_changed: bool = False,
     emergency_stop: EmergencyStopView = RELEASED,
     emergency_stop_changed: bool = False,
+    devices: Sequence[DeviceView] = (),
 ) -> Frame:
     """Make frame number `seq`, of the tick at `seq` * 50 ms."""
     return Frame(
@@ -115,6 +117,7 @@ def frame(
         signals={view.signal: view for view in signals},
         errors={view.key.name: view for view in errors},
         reactions={view.name: view for view in reactions},
+        devices={view.device: view for view in devices},
         task=task,
         task_changed=full or task_changed,
         vehicle=vehicle,
