@@ -6,6 +6,7 @@ from typing import Generic, TypeVar
 
 from domain.computers import ComputerName
 from domain.devices.device_view import DeviceView
+from domain.devices.lead_view import LeadView
 from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     EmergencyStopView,
@@ -56,6 +57,10 @@ class Frame:
     """As for `parts`, by name."""
     devices: Mapping[ComputerName, DeviceView]
     """As for `parts`; empty in all frames: the robot has one computer."""
+    lead: LeadView | None
+    """On a device, which it is and whose word counts; None: it is no device."""
+    lead_changed: bool
+    """As `task_changed`."""
     task: TaskView | None
     """The current task, or else the last one; None: there has been none."""
     task_changed: bool
@@ -227,6 +232,7 @@ def _all_changed(frame: Frame) -> Frame:
     """Return a frame that tells everything anew but parts, signals and errors."""
     return replace(
         frame,
+        lead_changed=True,
         task_changed=True,
         vehicle_changed=True,
         holds_changed=True,

@@ -112,7 +112,7 @@ class FramePublisher:
         self.seq += 1
         core = self._core
         holds, emergency_stop = core.driving.holds, core.emergency_stop()
-        last = self.frames.newest
+        lead, last = core.lead(), self.frames.newest
         frame = Frame(
             seq=self.seq,
             at=self._clock.now(),
@@ -122,6 +122,8 @@ class FramePublisher:
             errors=self._take_errors(full=full),
             reactions=self._take_reactions(full=full),
             devices=self._take_devices(full=full),
+            lead=lead,
+            lead_changed=full or last is None or lead != last.lead,
             task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,

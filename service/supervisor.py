@@ -9,8 +9,8 @@ from contextlib import suppress
 from functools import partial
 
 from domain.actor import SERVICE
-from domain.computers import ComputerName, Connection
 from domain.commands import LinkCommand, PreemptGoal, SendGoal
+from domain.computers import ComputerName, Connection
 from domain.errors import PilothouseError
 from domain.findings import Finding
 from domain.inputs import HoldRequest, Input, ServiceStall

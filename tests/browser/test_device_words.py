@@ -86,14 +86,11 @@ def test_the_page_of_a_device_says_whose_word_counts(page: Page) -> None:
     said = run(
         page,
         "return given.map(words.ownWords);",
-        [
-            this_device("arm", lead)
-            for lead in ("never_connected", "following", "cut_off", "acting_alone")
-        ],
+        [this_device("arm", lead) for lead in ("nobody", "supervisor", "cut_off", "device")],
     )
     assert said == [
-        "DEVICE arm: no supervisor yet",
-        "DEVICE arm: the supervisor's word counts",
-        "DEVICE arm: cut off",
-        "DEVICE arm: acts alone",
+        "arm: no supervisor yet",
+        "arm: the supervisor's word counts",
+        "arm: cut off",
+        "arm: acts alone",
     ]

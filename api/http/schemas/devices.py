@@ -5,6 +5,7 @@ from pydantic import Field
 from api.http.schemas.base import Json, Timestamp, timestamp, timestamp_or_none
 from domain.computers import Connection, DeviceState
 from domain.devices.device_view import DeviceView
+from domain.devices.lead_view import LeadView, Word
 from domain.devices.settings import OfflineSettings
 from domain.timebase import Instant, to_seconds
 from service.clock import Clock
@@ -95,7 +96,38 @@ class ListedDeviceJson(DeviceJson):
         )
 
 
+class ThisDeviceJson(Json):
+    """The device that the service runs on, and whose word counts there."""
+
+    device: str
+    lead: Word = Field(
+        description=(
+            "Whose word counts. `nobody`: it was never connected since its start; `cut_off`: it"
+            " waits until it may act on its own; `device`: it does what it does when it is cut off"
+        )
+    )
+    supervisor: DeviceState = Field(description="How the connection to the supervisor is")
+    since_at: Timestamp = Field(description="Since when it is so")
+    reason: str = Field(description="Why it is not connected; empty: it is")
+    when_cut_off: str = Field(description="What it does on its own then, in words")
+
+    @classmethod
+    def of(cls, view: LeadView, clock: Clock) -> "ThisDeviceJson":
+        """Show `view`."""
+        return cls(
+            device=view.device,
+            lead=view.word,
+            supervisor=view.supervisor,
+            since_at=timestamp(clock, view.since),
+            reason=view.reason,
+            when_cut_off=view.offline,
+        )
+
+
 class DevicesJson(Json):
     """The other computers of the robot, in the order of the robot file."""
 
     items: list[ListedDeviceJson]
+    this: ThisDeviceJson | None = Field(
+        description="On a device, which it is and whose word counts; null: this is the supervisor"
+    )

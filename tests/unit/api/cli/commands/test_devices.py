@@ -99,10 +99,10 @@ def test_a_robot_of_one_computer_has_none(service: Service, capsys: Output) -> N
 @pytest.mark.parametrize(
     ("lead", "code", "words"),
     [
-        ("following", 0, "device arm: the supervisor's word counts"),
-        ("never_connected", 1, "device arm: no supervisor yet"),
+        ("supervisor", 0, "device arm: the supervisor's word counts"),
+        ("nobody", 1, "device arm: no supervisor yet"),
         ("cut_off", 1, "device arm: cut off"),
-        ("acting_alone", 1, "device arm: acts alone"),
+        ("device", 1, "device arm: acts alone"),
     ],
 )
 def test_a_device_itself_says_whose_word_counts(

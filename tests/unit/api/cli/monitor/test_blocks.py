@@ -383,8 +383,9 @@ def test_reactions_are_counted_and_named_by_how_they_stand() -> None:
 # --- devices -------------------------------------------------------------------------------------
 
 
-def drawn_devices(*devices: Json, later_s: float = 0.0, **more: Json) -> list[str]:
-    known = robot(frame(devices=named("device", *devices), **more))
+def drawn_devices(*devices: Json, later_s: float = 0.0, **more: object) -> list[str]:
+    message = {**frame(devices=named("device", *devices)), **more}
+    known = robot(message)
     return plain(blocks.devices(view(known, later_s=later_s)))
 
 
@@ -400,7 +401,7 @@ def test_a_device_that_is_lost_is_told_with_for_how_long() -> None:
 
 
 def test_the_monitor_of_a_device_says_whose_word_counts() -> None:
-    own = this_device("arm", "acting_alone")
+    own = this_device("arm", "device")
 
     assert drawn_devices(this_device=own) == ["device arm: acts alone"]
 
