@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NewType
 
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 
 ComputerName = NewType("ComputerName", str)
 """`supervisor`, or the name of a device in the robot file."""
@@ -43,3 +43,18 @@ class PeerStop:
     reason: str
     since: Instant
     """On the clock of this computer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """How the connection to another computer is doing, measured by the messages that pass."""
+
+    heard_at: Instant | None = None
+    """When a beat of it last came; None: none has come since the start."""
+    round_trip: Duration | None = None
+    """From sending a beat to hearing its echo, which waits for the next beat of the other computer;
+    None: no echo has come."""
+    lost_share: float | None = None
+    """Share of the beats of the last seconds that did not come; None: none has come so far."""
+    dropped: int = 0
+    """Messages of it that were too many or too long, or could not be read."""

@@ -8,11 +8,13 @@ from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
 from domain.commands import Drive, LinkCommand, NodeCommand
+from domain.computers import ComputerName, Connection
 from domain.inputs import (
     BackendStatus,
     DeviceStatus,
     DriveStatus,
     ErrorReport,
+    Input,
     NodeAnswer,
     NodeReport,
     OrderReceived,
@@ -102,6 +104,17 @@ class ComputersLink(Adapter, Protocol):
 
     def send(self, command: LinkCommand, /) -> None:
         """Tell other computers, and return at once. Never raises."""
+        ...
+
+    def connection(self, computer: ComputerName, /) -> Connection:
+        """Return how the connection to another computer is doing."""
+        ...
+
+    def note(self, given: Input, /) -> None:
+        """Learn what the core of this computer took in, after what followed from it was done.
+
+        A device tells the supervisor what that says of its nodes and signals.
+        """
         ...
 
 

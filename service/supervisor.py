@@ -195,6 +195,8 @@ class Supervisor:
             # Goals are for the navigation on board; the rest is for nodes and the vehicle.
             elif not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
+        if self.link is not None:
+            self.link.note(step.given)
         if self._keeper is not None:
             self._keeper.keep_with_step(step.at)
         if self.journal is not None:

@@ -16,7 +16,11 @@ if TYPE_CHECKING:
     from api.cli.commands.command import Command
 
 GROUPS: Mapping[str, Mapping[str, str]] = {
-    "run a robot": {"serve": "serve.COMMAND", "simulate": "simulate.COMMAND"},
+    "run a robot": {
+        "serve": "serve.COMMAND",
+        "device": "device.COMMAND",
+        "simulate": "simulate.COMMAND",
+    },
     "act": {
         "stop": "stop.COMMAND",
         "release": "release.COMMAND",
@@ -33,6 +37,7 @@ GROUPS: Mapping[str, Mapping[str, str]] = {
         "why": "why.WHY",
         "errors": "errors.ERRORS",
         "reactions": "reactions.COMMAND",
+        "devices": "devices.COMMAND",
         "events": "events.COMMAND",
     },
     "models": {"check": "check.COMMAND", "analyse": "analyse.COMMAND"},

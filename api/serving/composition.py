@@ -75,6 +75,12 @@ class ServeOptions:
     """Of the greeting."""
     data: str = MEMORY
     """Folder for what survives a restart, or `MEMORY`, or `USUAL`."""
+    device: str | None = None
+    """Which device of the robot this is; None: its supervisor."""
+    link: tuple[str, ...] = ()
+    """Where this computer listens for the others; empty: as in the robot file."""
+    insecure_link: bool = False
+    """Whether the link may go over a network without certificates."""
 
 
 class MisuseError(Exception):

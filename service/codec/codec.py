@@ -7,6 +7,7 @@ from domain.commands import Command
 from domain.events.event import RecordedEvent
 from domain.inputs import Input
 from domain.kept import Keeping, Kept
+from domain.link.messages import Message
 from service.codec.errors import CodecError
 from service.codec.json_text import from_text, to_text
 from service.codec.recorded_step import RecordedStep
@@ -16,6 +17,8 @@ VERSION = 1
 """Of the format; whoever stores or sends records says with which version they were written."""
 MAX_BYTES = 8 * 2**20
 """Largest size of one record; a path of most waypoints takes 3.2 MB."""
+MAX_MESSAGE_BYTES = 2**20
+"""Largest size of what one computer of a robot tells another, before it is packed."""
 MAX_STEP_BYTES = 2**29
 """Largest size of a step; the first one of a run brings the paths of a hundred tasks back."""
 
@@ -80,4 +83,5 @@ EVENTS: Codec[RecordedEvent] = Codec(RecordedEvent)
 KEPT: Codec[Kept] = Codec(*get_args(Kept))
 KEEPINGS: Codec[Keeping] = Codec(Keeping)
 ACTORS: Codec[Actor] = Codec(Actor)
+MESSAGES: Codec[Message] = Codec(*get_args(Message), most_bytes=MAX_MESSAGE_BYTES)
 STEPS: Codec[RecordedStep] = Codec(RecordedStep, most_bytes=MAX_STEP_BYTES)

@@ -12,6 +12,7 @@ from domain import commands, inputs, kept
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from domain.link import messages
 from service.codec.recorded_step import RecordedStep
 
 NAMES: Mapping[type, str] = {
@@ -49,6 +50,11 @@ NAMES: Mapping[type, str] = {
     inputs.CancelTaskRequest: "cancel_task_request",
     inputs.HoldRequest: "hold_request",
     inputs.ReleaseRequest: "release_request",
+    inputs.DeviceStatus: "device_status",
+    inputs.SupervisorStatus: "supervisor_status",
+    inputs.PeerStops: "peer_stops",
+    inputs.StopsReleased: "stops_released",
+    inputs.OrderReceived: "order_received",
     inputs.Restored: "restored",
     # Commands.
     commands.AskTransition: "ask_transition",
@@ -57,6 +63,14 @@ NAMES: Mapping[type, str] = {
     commands.Drive: "drive",
     commands.SendGoal: "send_goal",
     commands.PreemptGoal: "preempt_goal",
+    commands.TellStops: "tell_stops",
+    commands.AskRelease: "ask_release",
+    commands.AnswerOrder: "answer_order",
+    commands.ActAlone: "act_alone",
+    # Messages of the link.
+    messages.Beat: "beat",
+    messages.Report: "report",
+    messages.NodeOrder: "node_order",
     # What is kept.
     kept.Keeping: "keeping",
     kept.KeptTarget: "kept_target",

@@ -16,8 +16,19 @@ from domain.commands import Command
 from domain.events.event import Event, RecordedEvent
 from domain.inputs import Input
 from domain.kept import Keeping, Kept
+from domain.link.messages import Message
 from domain.paths.path import Path
-from service.codec.codec import ACTORS, COMMANDS, EVENTS, INPUTS, KEEPINGS, KEPT, STEPS, Codec
+from service.codec.codec import (
+    ACTORS,
+    COMMANDS,
+    EVENTS,
+    INPUTS,
+    KEEPINGS,
+    KEPT,
+    MESSAGES,
+    STEPS,
+    Codec,
+)
 from service.codec.recorded_step import RecordedStep
 
 
@@ -39,6 +50,7 @@ CODECS: tuple[tuple[Codec[Any], tuple[type, ...]], ...] = (
     (KEPT, get_args(Kept)),
     (KEEPINGS, (Keeping,)),
     (ACTORS, (Actor,)),
+    (MESSAGES, get_args(Message)),
     (STEPS, (RecordedStep,)),
 )
 EVENT_CLASSES = tuple(_concrete(Event))

@@ -2,9 +2,14 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from api.cli.commands.command import Command, port
 from api.serving.data_folder import USUAL
+
+if TYPE_CHECKING:
+    # When the command runs, and not for `--help`: it brings the whole service.
+    from api.serving.composition import ServeOptions
 
 _TEXT = """\
 Run the service until Ctrl-C, SIGTERM or SIGHUP (an ssh session that closes);
@@ -19,6 +24,10 @@ machine with --allowed-host.
 What must not be forgotten (emergency stop, holds, targets, tasks) and the logs
 are kept in a folder per robot; the greeting says where. After a restart nothing
 moves before you ask for it. To forget, stop the service and delete the folder.
+
+Where the robot file has a block `devices`, this is the supervisor: it commands
+the nodes of the devices over the link, and itself the others. Start each device
+by: pilothouse device NAME MODEL --robot FILE
 
 With --backend ros2, the nodes are the ROS 2 nodes of the domain ROS_DOMAIN_ID.
 Source setup.bash of the ROS 2 distribution first. ROS 2 participants in that
@@ -36,12 +45,24 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "model", nargs="?", type=Path, metavar="MODEL", help="model file; default: an example"
     )
     parser.add_argument("--robot", type=Path, metavar="FILE", help="robot file: settings")
+    add_service_options(
+        parser,
+        data="~/.local/state/pilothouse/NAME, where NAME is that of the robot file or of the model",
+    )
+
+
+def add_service_options(parser: argparse.ArgumentParser, data: str) -> None:
+    """Add the options that every service has, of a supervisor or of a device.
+
+    Args:
+        parser: Of the command.
+        data: The usual folder for what survives a restart, in words.
+    """
     parser.add_argument(
         "--data",
         default=USUAL,
         metavar="DIR",
-        help="folder for what survives a restart; :memory: keeps nothing; default: "
-        "~/.local/state/pilothouse/NAME, where NAME is that of the robot file or of the model",
+        help=f"folder for what survives a restart; :memory: keeps nothing; default: {data}",
     )
     parser.add_argument(
         "--backend",
@@ -49,6 +70,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         help="how nodes are reached; default: as in the robot file, else simulated",
     )
     _add_network(parser)
+    _add_link(parser)
     parser.add_argument(
         "--mock-signals", action="store_true", help="publish mock values of the five signals"
     )
@@ -56,10 +78,26 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "--format",
         default="text",
         choices=("text", "json"),
-        help="of the greeting; json: {url, version, model, data, token_needed, simulated}",
+        help="of the greeting; json: {url, version, model, data, token_needed, simulated, ...}",
     )
     parser.add_argument(
         "--log-level", default="info", choices=("debug", "info", "warning", "error")
+    )
+
+
+def _add_link(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--link",
+        action="append",
+        default=[],
+        metavar="ENDPOINT",
+        help="where this computer listens for the others of the robot, such as quic/10.0.0.2:7447; "
+        "can be repeated; default: as in the robot file",
+    )
+    parser.add_argument(
+        "--insecure-link",
+        action="store_true",
+        help="link computers over a network without certificates: everybody there can command them",
     )
 
 
@@ -91,24 +129,30 @@ def _add_network(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from api.serving.composition import ServeOptions
     from api.serving.serving import serve
 
-    return serve(
-        ServeOptions(
-            model=options.model,
-            robot=options.robot,
-            backend=options.backend,
-            host=options.host,
-            port=options.port,
-            anonymous=options.anonymous,
-            mock_signals=options.mock_signals,
-            allowed_hosts=tuple(options.allowed_host),
-            allowed_origins=tuple(options.allowed_origin),
-            log_level=options.log_level,
-            form=options.format,
-            data=options.data,
-        )
+    return serve(serve_options(options))
+
+
+def serve_options(options: argparse.Namespace) -> "ServeOptions":
+    """Return what the options of a service say; those of a device besides `device`."""
+    from api.serving.composition import ServeOptions
+
+    return ServeOptions(
+        model=options.model,
+        robot=options.robot,
+        backend=options.backend,
+        host=options.host,
+        port=options.port,
+        anonymous=options.anonymous,
+        mock_signals=options.mock_signals,
+        allowed_hosts=tuple(options.allowed_host),
+        allowed_origins=tuple(options.allowed_origin),
+        log_level=options.log_level,
+        form=options.format,
+        data=options.data,
+        link=tuple(options.link),
+        insecure_link=options.insecure_link,
     )
 
 

@@ -4,6 +4,16 @@ from collections.abc import Mapping
 from math import inf, nan
 
 from domain.actor import Actor
+from domain.commands import AskParameters, AskTransition
+from domain.computers import (
+    SUPERVISOR,
+    ComputerName,
+    DeviceState,
+    Incarnation,
+    PeerStop,
+    Session,
+    StopId,
+)
 from domain.identifiers import ChangeId, GoalId
 from domain.inputs import (
     AcknowledgeReactionRequest,
@@ -13,6 +23,7 @@ from domain.inputs import (
     CancelRequest,
     CancelTaskRequest,
     CheckpointReport,
+    DeviceStatus,
     DriveStatus,
     EmergencyStopRequest,
     ErrorReport,
@@ -22,7 +33,9 @@ from domain.inputs import (
     ModeRequest,
     NodeAnswer,
     NodeReport,
+    OrderReceived,
     ParametersRequest,
+    PeerStops,
     Reading,
     Readings,
     ReleaseRequest,
@@ -31,7 +44,9 @@ from domain.inputs import (
     ServiceStall,
     ShelveRequest,
     SourceFault,
+    StopsReleased,
     StorageStatus,
+    SupervisorStatus,
     TaskRequest,
     TimePassed,
     TransitionRequest,
@@ -327,6 +342,64 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
     "release_request": (
         ReleaseRequest(owner="operator", actor=Actor(name="ada", way="http", address="10.0.0.7")),
         ReleaseRequest(owner="operator", actor=Actor(name="", way="", address="")),
+    ),
+    "device_status": (
+        DeviceStatus(
+            device=ComputerName("arm"),
+            state=DeviceState.LOST,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            incarnation=Incarnation("0f" * 16),
+            session=Session("a5" * 16),
+            version="0.9.1",
+            autonomous=True,
+            refused="another computer calls itself arm",
+        ),
+        DeviceStatus(
+            device=ComputerName("arm"),
+            state=DeviceState.CONNECTED,
+            reason="",
+            incarnation=None,
+            session=None,
+            version=None,
+            autonomous=False,
+            refused="",
+        ),
+    ),
+    "supervisor_status": (
+        SupervisorStatus(
+            state=DeviceState.LATE,
+            reason="nothing heard for 0.5 s",
+            incarnation=Incarnation("0f" * 16),
+        ),
+        SupervisorStatus(state=DeviceState.NEVER_SEEN, reason="", incarnation=None),
+    ),
+    "peer_stops": (
+        PeerStops(
+            computer=ComputerName("arm"),
+            stops=(
+                PeerStop(
+                    id=StopId("arm-0f0f-3"),
+                    by="ada",
+                    reason='Größe ≤ 3 — "gripper\\jam"',
+                    since=1764420000123456789,
+                ),
+            ),
+        ),
+        PeerStops(computer=SUPERVISOR, stops=()),
+    ),
+    "stops_released": (
+        StopsReleased(stops=(StopId("arm-0f0f-3"),), computer=SUPERVISOR),
+        StopsReleased(stops=(), computer=ComputerName("arm")),
+    ),
+    "order_received": (
+        OrderReceived(
+            command=AskTransition(
+                request=41, node=PartName("left/arm"), transition=Transition.ACTIVATE
+            )
+        ),
+        OrderReceived(
+            command=AskParameters(request=42, node=PartName("left/arm"), values=PARAMETERS)
+        ),
     ),
     "restored": (
         Restored(

@@ -3,7 +3,19 @@
 from collections.abc import Mapping
 
 from domain.actor import Actor
-from domain.commands import AskFacts, AskParameters, AskTransition, Drive, PreemptGoal, SendGoal
+from domain.commands import (
+    ActAlone,
+    AnswerOrder,
+    AskFacts,
+    AskParameters,
+    AskRelease,
+    AskTransition,
+    Drive,
+    PreemptGoal,
+    SendGoal,
+    TellStops,
+)
+from domain.computers import ComputerName, PeerStop, StopId
 from domain.events.changes import StepEnded
 from domain.events.event import RecordedEvent
 from domain.events.service import TimeWasDue
@@ -65,6 +77,33 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
         ),
     ),
     "preempt_goal": (PreemptGoal(goal=GoalId(5)),),
+    "tell_stops": (
+        TellStops(
+            stops=(
+                PeerStop(
+                    id=StopId("supervisor-a5a5-3"),
+                    by="ada",
+                    reason='Größe ≤ 3 — "gripper\\jam"',
+                    since=1764420000123456789,
+                ),
+            )
+        ),
+        TellStops(stops=()),
+    ),
+    "ask_release": (
+        AskRelease(computer=ComputerName("arm"), stops=(StopId("arm-0f0f-3"),)),
+        AskRelease(computer=ComputerName("arm"), stops=()),
+    ),
+    "answer_order": (
+        AnswerOrder(
+            request=41,
+            node=PartName("left/arm"),
+            accepted=False,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+        AnswerOrder(request=41, node=PartName("left/arm"), accepted=True, reason=""),
+    ),
+    "act_alone": (ActAlone(autonomous=True),),
     "actor": (
         Actor(name="ada", way="http", address="10.0.0.7"),
         Actor(name="", way="", address=""),

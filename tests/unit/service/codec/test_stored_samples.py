@@ -14,11 +14,11 @@ from domain.actor import Actor
 from domain.events.event import Event, RecordedEvent
 from service.codec.codec import EVENTS, Codec
 from service.codec.names import NAMES
-from tests.support.record_samples import events, inputs, others
+from tests.support.record_samples import events, inputs, messages, others
 from tests.support.records import RECORDS, is_same
 
 FOLDER = Path(__file__).parents[3] / "data" / "codec" / "v1"
-SAMPLES = {**inputs.INPUTS, **events.EVENTS, **others.OTHERS}
+SAMPLES = {**inputs.INPUTS, **events.EVENTS, **messages.MESSAGES, **others.OTHERS}
 CODECS: dict[str, Codec[Any]] = {NAMES[kind]: codec for kind, codec in RECORDS}
 
 
