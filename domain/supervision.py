@@ -17,6 +17,9 @@ from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
+from domain.devices.lead import Lead
+from domain.devices.lead_view import LeadView
+from domain.devices.settings import LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
@@ -84,6 +87,8 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
+    lead: LeadSettings | None = None
+    """Of a device, which follows a supervisor; None: this computer follows nobody."""
 
 
 class Supervision:
@@ -117,6 +122,7 @@ class Supervision:
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
         self._reactions = self._reactions_by(displacing, reactions, guards, start)
+        self._lead = self._lead_by(settings.lead, start)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -124,6 +130,8 @@ class Supervision:
             self._health,
             self._emergency_stop,
             ModeLimits(settings.signals, parts, health, outbox),
+            # It rejects what is the supervisor's to ask, before anything comes of it.
+            *(() if self._lead is None else (self._lead,)),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -133,7 +141,8 @@ class Supervision:
             self._changing,
             # What sets targets in force, the stronger first.
             self._reactions,
-            *self._displacers(guards, settings.rules, displacing),
+            # A device leaves degrading and climbing back to its supervisor.
+            *(self._displacers(guards, settings.rules, displacing) if self._lead is None else ()),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
@@ -170,6 +179,12 @@ class Supervision:
             self._outbox,
             start,
         )
+
+    def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
+        if settings is None:
+            return None
+        parts, changing, reactions = self._parts, self._changing, self._reactions
+        return Lead(settings, parts, changing, reactions, self._health, self._outbox, start)
 
     def _displacers(
         self, guards: Guards, rules: RuleSettings, displacing: Displacing
@@ -321,6 +336,8 @@ class Supervision:
         Raises:
             PilothouseError: The request would be rejected.
         """
+        if self._lead is not None:
+            self._lead.check(request)
         return self._changing.plan(request)
 
     def change(self, identity: str) -> ChangeView:
@@ -410,6 +427,10 @@ class Supervision:
         """Tell whether a request may start or loosen something as things are now."""
         stopped, holds = self.emergency_stop().engaged, self.driving.holds
         return may_loosen(given, is_stopped=stopped, holds=holds)
+
+    def lead(self) -> LeadView | None:
+        """Return whose word counts at this device; None: this computer follows nobody."""
+        return None if self._lead is None else self._lead.view()
 
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""
