@@ -37,6 +37,7 @@ GROUPS: Mapping[str, Mapping[str, str]] = {
         "why": "why.WHY",
         "errors": "errors.ERRORS",
         "reactions": "reactions.COMMAND",
+        "devices": "devices.COMMAND",
         "events": "events.COMMAND",
     },
     "models": {"check": "check.COMMAND", "analyse": "analyse.COMMAND"},

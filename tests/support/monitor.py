@@ -88,6 +88,32 @@ def error(name: str, part: str | None = None, state: str = "active") -> Json:
     }
 
 
+def device(name: str, state: str = "connected", **more: object) -> Json:
+    """Return a device that was last heard at `AT`, and owns the node `drive_base`."""
+    return {
+        "device": name,
+        "state": state,
+        "reason": "",
+        "since_at": AT,
+        "heard_at": AT,
+        "parts": ["drive_base"],
+        "incarnation": "1" * 32,
+        "session": "2" * 32,
+        "autonomous": False,
+        "offline": {"after_s": 2.0, "target": {"drive_base": "inactive"}, "reactions": False},
+        "stops": [],
+        "version": "0.1.0",
+        "refused": "",
+        **more,
+    }
+
+
+def this_device(name: str, lead: str = "following", **more: object) -> Json:
+    """Return what the service of a device tells of itself."""
+    offline = device(name)["offline"]
+    return {"device": name, "lead": lead, "reason": "", "since_at": AT, "offline": offline, **more}
+
+
 def task(status: str = "RUNNING", **more: object) -> Json:
     """Return a task in its middle."""
     return {

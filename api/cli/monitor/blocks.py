@@ -9,6 +9,7 @@ from rich.text import Text
 
 from api.cli.error_lines import SEVERITIES, is_on, is_silenced
 from api.cli.monitor import words
+from api.cli.monitor.device_words import amiss, heard_last, is_away, own_words, state_words
 from api.cli.monitor.rows import (
     CALM,
     CHANGES,
@@ -145,14 +146,19 @@ def _part_cells(view: View, row: PartRow) -> tuple[str, ...]:
 
 
 def _part_note(view: View, row: PartRow) -> str:
-    said = (_part_state(view, row), words.setter_and_reason(row.part["effective_target"]))
+    device = row.part.get("device")
+    said = (
+        _part_state(view, row),
+        words.setter_and_reason(row.part["effective_target"]),
+        f"on {device}" if device else "",
+    )
     return ", ".join(filter(None, said))
 
 
 def _part_state(view: View, row: PartRow) -> str:
     part, since = row.part, row.part["deviation_since_at"]
     if row.mark == UNREACHABLE:
-        return "unreachable"
+        return _away_words(view, part)
     for_time = "" if since is None else f" {words.duration(view.known_for_s(since))}"
     if row.mark == CHANGES:
         return f"changing{for_time}"
@@ -165,6 +171,16 @@ def _part_state(view: View, row: PartRow) -> str:
     elsewhere = part.get("deviation_reason")
     is_own = not elsewhere or elsewhere.startswith(f"{row.name} is ")
     return f"deviates{for_time}" if is_own else f"deviates{for_time}: {elsewhere}"
+
+
+def _away_words(view: View, part: Json) -> str:
+    """Return that a node is unreachable; with what was known last, where its device is away."""
+    heard = heard_last(view.robot.devices.get(part.get("device") or ""))
+    if heard is None:
+        return "unreachable"
+    known = part.get("last_known")
+    was = f"was {words.label(known)}" if known else "unreachable"
+    return f"{was} {words.duration(view.known_for_s(heard))} ago"
 
 
 def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None) -> list[Text]:
@@ -273,6 +289,26 @@ def reactions(view: View) -> list[Text]:
     ]
     style = _MARK_STYLES[WRONG] if by_state.keys() & {"exhausted", "acting"} else ""
     return [Text(printable(f"reactions: {'; '.join(told)}"), style=style)] if told else []
+
+
+def devices(view: View) -> list[Text]:
+    """Return which device this is and whose word counts, and which devices are not as they should.
+
+    Nothing where the robot has one computer, and where all others are connected.
+    """
+    own, found = view.robot.this_device, amiss(view.robot.devices)
+    lines = [] if own is None else [Text(printable(own_words(own)))]
+    if not found:
+        return lines
+    told = ", ".join(_device_words(view, device) for device in found[:_NAMED])
+    style = _MARK_STYLES[UNREACHABLE if any(map(is_away, found)) else WRONG]
+    return [*lines, Text(printable(f"devices: {told}"), style=style)]
+
+
+def _device_words(view: View, device: Json) -> str:
+    heard = heard_last(device)
+    for_time = "" if heard is None else f" for {words.duration(view.known_for_s(heard))}"
+    return f"{device['device']} {state_words(device)}{for_time}"
 
 
 def _worst_first(roots: Sequence[tuple[str, Json]]) -> str:

@@ -37,7 +37,12 @@ def _joined(view: View, console: Console, top: list[Text], height: int | None) -
     task = blocks.task(view, console)
     parts = part_rows(view.robot.parts or {})
     signals = [SignalRow(signal) for signal in (view.robot.signals or {}).values()]
-    legend = [*blocks.errors(view), *blocks.reactions(view), Text(blocks.LEGEND)]
+    legend = [
+        *blocks.devices(view),
+        *blocks.errors(view),
+        *blocks.reactions(view),
+        Text(blocks.LEGEND),
+    ]
     if height is None:
         return _spaced(
             top,

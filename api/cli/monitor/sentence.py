@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from api.cli.monitor import words
+from api.cli.monitor.device_words import not_stopped_words
 from api.cli.monitor.part_problems import part_problems
 from api.cli.monitor.store import Robot
 from api.cli.monitor.view import Level, View, seconds_of
@@ -71,7 +72,8 @@ def stop_sentence(view: View) -> Sentence | None:
     since = f"for {words.duration(view.known_for_s(stop['since_at']))}"
     engaged = "engaged" if is_live else "was engaged"
     text = f"{engaged}{why}, {since}{by}, {standstill_words(view.robot)}"
-    return Sentence("EMERGENCY STOP", text, level="error")
+    away = not_stopped_words(view.robot.devices)
+    return Sentence("EMERGENCY STOP", text, (away,) if away else (), "error")
 
 
 def standstill_words(robot: Robot) -> str:
@@ -123,7 +125,7 @@ def _error_sentence(robot: Robot) -> Sentence:
     text = first if task is None else f"{first}, task {task['id']} is {_STANDS[task['status']]}"
     kept = _held_by([hold for hold in _holds(robot).values() if hold["owner"] != "error"])
     also = (f"also {kept}",) if kept else ()
-    found = (*_movement(robot), *part_problems(robot.parts or {}))
+    found = (*_movement(robot), *part_problems(robot.parts or {}, robot.devices))
     more = (*others, *found, *also, *_aborted(robot))
     return Sentence(alarm_of(state) or "ERROR", text, more, "error")
 
@@ -132,7 +134,7 @@ def _calm_sentence(robot: Robot) -> Sentence:
     state = robot.system_state or {}
     word, text = _activity(robot)
     reasons = [reason["message"] for reason in state["reasons"]]
-    found = [*reasons, *_movement(robot), *part_problems(robot.parts or {})]
+    found = [*reasons, *_movement(robot), *part_problems(robot.parts or {}, robot.devices)]
     text = "; ".join([*found[:1], text])
     more = tuple(found[1:])
     if alarm := alarm_of(state):

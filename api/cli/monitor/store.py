@@ -42,6 +42,10 @@ class Robot:
     """By name, those that are not normal."""
     reactions: Mapping[str, Json] = field(default_factory=dict)
     """All, by name."""
+    devices: Mapping[str, Json] = field(default_factory=dict)
+    """The other computers of the robot, by name; empty: it has one computer."""
+    this_device: Json | None = None
+    """Which device the service runs on, and whose word counts; None: it is no device."""
     emergency_stop: Json | None = None
     last_event_id: int = 0
     notes: tuple[Note, ...] = ()
@@ -71,6 +75,8 @@ class Robot:
             "holds": list((self.holds or {}).values()),
             "errors": list(self.errors.values()),
             "reactions": list(self.reactions.values()),
+            "devices": list(self.devices.values()),
+            "this_device": self.this_device,
         }
 
 
@@ -110,6 +116,8 @@ def _state(robot: Robot, frame: Json) -> Robot:
         holds=frame.get("holds", robot.holds),
         errors=_open_ones(robot.errors, frame.get("errors", {})),
         reactions={**robot.reactions, **frame.get("reactions", {})},
+        devices={**robot.devices, **frame.get("devices", {})},
+        this_device=frame.get("this_device", robot.this_device),
         emergency_stop=frame.get("emergency_stop", robot.emergency_stop),
     )
 

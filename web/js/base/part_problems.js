@@ -1,26 +1,31 @@
 /** What is not as it should be with parts: pure functions, computed once for each set of parts. */
 
+import { deviceProblems, isAway } from "/web/js/base/device_words.js";
 import { label } from "/web/js/base/words.js";
 
 const NAMED = 3;
+const NONE = {};
 const found = new WeakMap();
 
-/** What is wrong with parts, the first few: "lidar is unreachable", "2 more such parts". */
-export function partProblems(parts) {
-  return problemsOf(parts).texts;
+/** What is wrong with parts, the first few: "lidar is unreachable", "2 more such parts".
+ *
+ * A device that is away stands for all parts of it.
+ */
+export function partProblems(parts, devices = NONE) {
+  return [...deviceProblems(devices), ...problemsOf(parts, devices).texts];
 }
 
 /** How many parts there are, how many of them deviate, and how many are unreachable. */
-export function partCounts(parts) {
-  return problemsOf(parts).counts;
+export function partCounts(parts, devices = NONE) {
+  return problemsOf(parts, devices).counts;
 }
 
-function problemsOf(parts) {
-  if (!found.has(parts)) found.set(parts, findProblems(parts));
+function problemsOf(parts, devices) {
+  if (found.get(parts)?.devices !== devices) found.set(parts, { devices, ...findProblems(parts, devices) });
   return found.get(parts);
 }
 
-function findProblems(parts) {
+function findProblems(parts, devices) {
   const problems = new Map();
   const isExplained = (part) =>
     (part.parts ?? []).some((name) => problems.has(name) || (parts[name] && isExplained(parts[name])));
@@ -32,12 +37,12 @@ function findProblems(parts) {
       if (part.kind !== kind) continue;
       const words = problemOf(part);
       if (!words || (kind === "system" && isExplained(part))) continue;
-      problems.set(part.name, words);
+      problems.set(part.name, isAway(devices[part.device]) ? null : words);
       if (part.reachable === false) counts.unreachable += 1;
       else counts.deviating += 1;
     }
   }
-  const texts = [...new Set(problems.values())];
+  const texts = [...new Set(problems.values())].filter(Boolean);
   const left = texts.length - NAMED;
   return { counts, texts: left > 0 ? [...texts.slice(0, NAMED), `${left} more such parts`] : texts };
 }

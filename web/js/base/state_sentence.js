@@ -43,7 +43,7 @@ export function robotSentence(state) {
   const reasonTexts = reasons.map(({ message }) => message);
   const alarm = ALARMS[reasons[0]?.code];
   // An alarm tells already how fast the vehicle moves.
-  const found = [...(alarm ? [] : movement(state, name)), ...partProblems(state.parts)];
+  const found = [...(alarm ? [] : movement(state, name)), ...partProblems(state.parts, state.devices)];
   if (name === "ERROR") {
     const [first = errors.join(", "), ...others] = reasonTexts;
     const text = task ? `${first}, task ${task.id} is ${STANDS[task.status]}` : first;

@@ -1,11 +1,16 @@
-/** <ph-chips>: beside the sentence: holds, parts that need attention, what is not real, contact. */
+/** <ph-chips>: beside the sentence: holds, parts that need attention, other computers, what is not real,
+ * contact.
+ */
 
-import { el, setAttribute, setText } from "/web/js/base/dom.js";
+import { amiss, chipWords, ownWords } from "/web/js/base/device_words.js";
+import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { partCounts } from "/web/js/base/part_problems.js";
 import { wholeSeconds } from "/web/js/base/words.js";
 import "/web/js/header/hold_chips.js";
 
 const UNSTORED_MS = 5000;
+/** As many devices have a chip of their own. */
+const SHOWN = 2;
 
 class Chips extends HTMLElement {
   #unstoredAt = -Infinity;
@@ -14,6 +19,8 @@ class Chips extends HTMLElement {
     this.holds = el("ph-hold-chips");
     this.deviating = this.#attention("deviating");
     this.unreachable = this.#attention("unreachable");
+    this.devices = el("span", { class: "chips-devices" });
+    this.own = el("span", { class: "chip badge", hidden: true });
     this.unreal = el("span", { class: "chip badge", hidden: true });
     this.contact = el("span");
     this.delay = el("span", { class: "quiet" });
@@ -22,14 +29,14 @@ class Chips extends HTMLElement {
     this.unstored = el("span", { class: "chip", role: "status", hidden: true });
     document.addEventListener("ph-unstored", () => (this.#unstoredAt = performance.now()));
     const contact = el("span", { class: "chip contact" }, this.contact, this.delay);
-    this.append(this.tryNow, this.unstored, this.holds, this.deviating, this.unreachable, this.unreal, contact);
+    this.append(this.tryNow, this.unstored, this.holds, this.devices, this.deviating, this.unreachable, this.own, this.unreal, contact);
     this.whole = contact;
   }
 
-  #attention(kind) {
-    const button = el("button", { type: "button", class: "chip", "data-level": "attention", "data-kind": kind });
+  #attention(kind, ...words) {
+    const button = el("button", { type: "button", class: "chip", "data-level": "attention", "data-kind": kind }, ...words);
     button.addEventListener("click", () => this.#tell("ph-attention"));
-    button.hidden = true;
+    button.hidden = words.length === 0;
     return button;
   }
 
@@ -40,7 +47,8 @@ class Chips extends HTMLElement {
   show(view) {
     const { live, contact } = view;
     this.holds.show(view);
-    this.#showParts(live.parts);
+    this.#showDevices(live);
+    this.#showParts(live);
     this.#showUnreal(live);
     this.#showContact(contact);
     const isUnstored = performance.now() - this.#unstoredAt < UNSTORED_MS;
@@ -48,10 +56,29 @@ class Chips extends HTMLElement {
     setText(this.unstored, isUnstored ? "Done; not on disk yet" : "");
   }
 
-  #showParts(parts) {
+  #showDevices({ devices, ownDevice }) {
+    const away = amiss(devices);
+    const words = away.slice(0, SHOWN).map(chipWords);
+    const left = away.slice(SHOWN).map((device) => chipWords(device).text);
+    if (left.length > 0) words.push({ text: `${left.length} more devices`, title: left.join(", ") });
+    renderOnce(this.devices, JSON.stringify(words), () =>
+      words.map(({ text, title }) => {
+        const chip = this.#attention("device", text);
+        setAttribute(chip, "title", title);
+        return chip;
+      }),
+    );
+    setAttribute(this.own, "hidden", ownDevice === null);
+    if (ownDevice === null) return;
+    setText(this.own, ownWords(ownDevice));
+    setAttribute(this.own, "title", ownDevice.reason);
+    setAttribute(this.own, "data-level", ownDevice.lead === "following" ? null : "attention");
+  }
+
+  #showParts({ parts, devices }) {
     if (this.parts === parts) return;
     this.parts = parts;
-    const { total, deviating, unreachable } = partCounts(parts);
+    const { total, deviating, unreachable } = partCounts(parts, devices);
     setAttribute(this.deviating, "hidden", deviating === 0);
     setText(this.deviating, `${deviating} of ${total} ${deviating === 1 ? "deviates" : "deviate"}`);
     setAttribute(this.unreachable, "hidden", unreachable === 0);

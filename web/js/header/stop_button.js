@@ -4,6 +4,7 @@
  */
 
 import { request } from "/web/js/base/api.js";
+import { notReachedWords, notStoppedWords } from "/web/js/base/device_words.js";
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { mayMove, standstillWords } from "/web/js/base/state_sentence.js";
 import { drawSteps, stopSteps } from "/web/js/header/stop_steps.js";
@@ -37,10 +38,11 @@ class StopButton extends HTMLElement {
     );
     this.steps = el("ol", { class: "stop-steps", "aria-label": "Emergency stop" });
     this.standstill = el("p", { class: "standstill" });
+    this.unheard = el("p", { class: "unheard" });
     this.note = el("p", { id: "stop-note" }, NOTE);
     this.key = el("p", {}, "Key: ", el("kbd", {}, "Shift+Esc"));
     this.alarm = el("p", { class: "stop-alarm", role: "alert", hidden: true });
-    const text = el("div", { class: "stop-text" }, this.steps, this.standstill, this.note, this.key);
+    const text = el("div", { class: "stop-text" }, this.steps, this.standstill, this.unheard, this.note, this.key);
     this.append(text, this.button, this.alarm);
     // On pointerdown and not on click: a finger that slides off must still stop the robot.
     this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.engage());
@@ -60,6 +62,9 @@ class StopButton extends HTMLElement {
     setText(this.note, live.replay ? NO_ROBOT : NOTE);
     setText(this.standstill, this.#latch?.engaged && contact.level !== "lost" ? standstillWords(live) : "");
     setAttribute(this.standstill, "data-moving", mayMove(live));
+    const words = this.#latch?.engaged ? notStoppedWords : notReachedWords;
+    setText(this.unheard, words(live.devices));
+    setAttribute(this.unheard, "title", this.unheard.textContent);
     this.#render();
   }
 

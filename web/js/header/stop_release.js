@@ -1,6 +1,7 @@
 /** <ph-stop-release>: a band while the emergency stop is engaged: who engaged it, and its release. */
 
 import { request } from "/web/js/base/api.js";
+import { notStoppedWords } from "/web/js/base/device_words.js";
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { whileSending } from "/web/js/base/sending.js";
 import { standstillWords } from "/web/js/base/state_sentence.js";
@@ -16,11 +17,12 @@ class StopRelease extends HTMLElement {
     this.className = "band";
     this.what = el("strong");
     this.stands = el("span");
+    this.unheard = el("strong", { class: "unheard" });
     this.steps = el("ol", { class: "stop-steps narrow-only", "aria-label": "Emergency stop" });
     this.reason = el("input", { type: "text", maxlength: 200, placeholder: "Reason, optional", "aria-label": "Reason for the release" });
     this.release = el("ph-hold-button", { label: "Release the stop (hold)" });
     this.problem = el("p", { class: "problem", role: "alert", hidden: true });
-    this.append(el("p", { class: "grow" }, this.what, this.stands), this.steps, this.reason, this.release, this.problem);
+    this.append(el("p", { class: "grow" }, this.what, this.stands, this.unheard), this.steps, this.reason, this.release, this.problem);
     this.release.addEventListener("ph-held", ({ detail }) => this.#release(detail.volatile));
   }
 
@@ -33,6 +35,8 @@ class StopRelease extends HTMLElement {
     const when = latch.since_at ? ` at ${timeOfDay(latch.since_at)}` : "";
     setText(this.what, `Emergency stop engaged${when}${by}${why}`);
     setText(this.stands, contact.level === "lost" ? "" : `; ${standstillWords(live)}`);
+    const away = notStoppedWords(live.devices);
+    setText(this.unheard, away && `; ${away}`);
     drawSteps(this.steps, stopProgress);
     this.release.disabled = contact.level === "lost" || Boolean(live.replay);
     this.release.volatile = volatile;

@@ -31,7 +31,7 @@ class Tabs extends HTMLElement {
       }
     }
     if (this.seen?.errors !== state.errors) this.#count("status", errorCount(state.errors), "error");
-    if (this.seen?.parts !== state.parts) this.#count("parts", partCount(state.parts), "attention");
+    if (this.seen?.parts !== state.parts) this.#count("parts", partCount(state), "attention");
     if (this.seen?.signals !== state.signals) this.#count("signals", signalCount(state.signals), "attention");
     this.seen = state;
   }
@@ -76,8 +76,8 @@ function errorCount(errors) {
   return Object.values(errors).filter((error) => isOn(error) && !isSilenced(error)).length;
 }
 
-function partCount(parts) {
-  const { deviating, unreachable } = partCounts(parts);
+function partCount({ parts, devices }) {
+  const { deviating, unreachable } = partCounts(parts, devices);
   return deviating + unreachable;
 }
 

@@ -10,6 +10,7 @@ import "/web/js/inspector/error_list.js";
 import "/web/js/inspector/lifecycle.js";
 import "/web/js/inspector/mode_switcher.js";
 import "/web/js/inspector/parameters.js";
+import "/web/js/inspector/part_device.js";
 import { whatDecides, whatIsNamed } from "/web/js/inspector/part_inputs.js";
 import { PartScreen } from "/web/js/inspector/part_screen.js";
 import { PartWatch, requestPlan } from "/web/js/inspector/part_watch.js";
@@ -43,6 +44,7 @@ class PartPanel extends HTMLElement {
     this.kind = el("span", { class: "kind" });
     this.pills = el("ph-pills");
     this.reason = el("p", { class: "note" });
+    this.device = el("ph-part-device", { hidden: true });
     this.why = el("ph-part-why", { hidden: true });
     this.errors = el("ph-error-list", { hidden: true });
     this.planFirst = el("input", { type: "checkbox", role: "switch" });
@@ -61,6 +63,7 @@ class PartPanel extends HTMLElement {
       el("div", { class: "panel-head" }, back, this.heading, this.kind),
       this.pills,
       this.reason,
+      this.device,
       this.why,
       this.errors,
       el("div", { class: "mode-head" }, this.modeTitle, planFirst),
@@ -94,8 +97,8 @@ class PartPanel extends HTMLElement {
     const { state, selected, enabled, moment, knownAt, volatile } = view;
     const part = state.parts[selected];
     const own = [part, enabled, moment, volatile, Math.floor(knownAt / 1000)];
-    const { parts, signals, errors, reactions, systemState, task, vehicle, holds } = state;
-    const inputs = [...own, parts, signals, errors, reactions, systemState, task, vehicle, holds];
+    const { parts, devices, signals, errors, reactions, systemState, task, vehicle, holds } = state;
+    const inputs = [...own, parts, devices, signals, errors, reactions, systemState, task, vehicle, holds];
     if (isSame(inputs, this.#inputs)) return;
     const isOwn = !isSame(own, this.#inputs.slice(0, own.length));
     if (!isOwn && performance.now() - this.#lookedAt < PAUSE_MS) return;
@@ -121,6 +124,7 @@ class PartPanel extends HTMLElement {
     setText(this.kind, part.kind ?? "");
     this.pills.show(part);
     setText(this.reason, part.actual.reason ?? "");
+    this.device.show({ part, device: state.devices[part.device], knownAt: this.view.knownAt });
     this.errors.show({ errors: errorsOf(state, part.name), knownAt: this.view.knownAt });
     this.#showReactions(part);
     this.#show();

@@ -75,6 +75,7 @@ function otherReasons({ live, state, contact }) {
 /** How the line begins that an error makes superfluous. */
 function toldBy(error) {
   if (error.error === "UNREACHABLE") return `${error.part} is unreachable`;
+  if (error.error === "LOST") return `device ${error.part} is lost`;
   return error.message || errorName(error);
 }
 

@@ -12,6 +12,11 @@ export function parentOf(key) {
   return key.slice(0, Math.max(0, key.lastIndexOf(JOINT)));
 }
 
+/** Return the name of the part that a line of this key is of. */
+export function nameOf(key) {
+  return key.slice(key.lastIndexOf(JOINT) + 1);
+}
+
 /** Return the lines of the tree; `isOpen(key, name, level)` decides about systems, `shown` about all.
  *
  * `shown`: the names that are let through, with all above them; null: every part.

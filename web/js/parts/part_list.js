@@ -4,10 +4,11 @@
  * `ph-attention`, which lists only what needs attention.
  */
 
+import { heardLast } from "/web/js/base/device_words.js";
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { isSame as isSameList } from "/web/js/base/same.js";
 import { FilterBar } from "/web/js/parts/filter_bar.js";
-import { filtered, flatLines, matches, treeLines } from "/web/js/parts/lines.js";
+import { filtered, flatLines, matches, nameOf, parentOf, treeLines } from "/web/js/parts/lines.js";
 import { errorsByPart, Looks, structureOf } from "/web/js/parts/part_index.js";
 import { ageWords } from "/web/js/parts/row.js";
 import { RowList } from "/web/js/parts/row_list.js";
@@ -55,10 +56,10 @@ class PartList extends HTMLElement {
 
   update(view) {
     this.#view = view;
-    const { parts, errors, events } = view.state;
+    const { parts, devices, errors, events } = view.state;
     const isLost = view.contact.level === "lost" && view.moment === null;
     const seen = {
-      parts, errors, events, isLost, selected: view.selected, at: view.state.at !== null,
+      parts, devices, errors, events, isLost, selected: view.selected, at: view.state.at !== null,
       second: Math.floor(view.knownAt / 1000),
     };
     if (isSame(seen, this.#seen) && !this.#isStale) return;
@@ -159,13 +160,18 @@ class PartList extends HTMLElement {
     return isAttention && kind !== "any" ? `No part is ${kind}.` : "No part needs attention.";
   }
 
-  #tell({ key, name }) {
+  #tell({ key, name, level }) {
     const { parts } = this.#structure;
-    const { isLost, selected } = this.#seen;
+    const { devices, isLost, selected } = this.#seen;
     const part = parts[name];
-    const since = Date.parse(part.deviation_since_at) || this.#times.of(name, this.#view.knownAt);
+    const heard = part.reachable === false ? heardLast(devices[part.device]) : null;
+    const since = heard ?? (Date.parse(part.deviation_since_at) || this.#times.of(name, this.#view.knownAt));
+    const above = level > 1 ? parts[nameOf(parentOf(key))] : null;
     return {
       part,
+      // A system that is on one device as a whole tells it for all below.
+      device: part.device && part.device !== above?.device ? part.device : "",
+      isOld: heard !== null,
       look: isLost ? "unknown" : this.#looks.look(name),
       errors: this.#looks.errors(name),
       below: this.#looks.below(name),

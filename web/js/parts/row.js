@@ -14,21 +14,22 @@ export function makeRow(role) {
     start: el("span", { class: "name-start" }),
     end: el("span", { class: "name-end" }),
     space: el("span", { class: "name-space" }),
+    device: el("span", { class: "on-device" }),
     below: el("span", { class: "below" }),
     fit: el("span", { class: "fit" }),
     age: el("span", { class: "age" }),
     cause: el("span", { class: "cause" }),
   };
   row.name = el("span", { class: "name" }, row.start, row.end, row.space);
-  const parts = [row.twist, row.dot, row.name, row.below, row.fit, row.age, row.cause];
+  const parts = [row.twist, row.dot, row.name, row.device, row.below, row.fit, row.age, row.cause];
   row.item = el("li", { role }, ...parts);
   return row;
 }
 
 /** Bring a row up to date; nothing is touched while all that it shows is as it was.
  *
- * `told` is what is known of the part: `{part, look, errors, below, age, isSelected, hasFocus, width}`,
- * the width of the list in px.
+ * `told` is what is known of the part: `{part, device, isOld, look, errors, below, age, isSelected,
+ * hasFocus, width}`, the width of the list in px.
  */
 export function fillRow(row, line, told) {
   const seen = [line, ...Object.values(told)];
@@ -37,7 +38,7 @@ export function fillRow(row, line, told) {
   const { item } = row;
   item.line = line;
   if (line.heading) return fillHeading(row, line);
-  const { part, look, errors, below, age, isSelected, hasFocus, width } = told;
+  const { part, device, isOld, look, errors, below, age, isSelected, hasFocus, width } = told;
   setAttribute(item, "class", "row");
   setAttribute(item, "aria-hidden", null);
   setAttribute(item, "aria-level", line.level);
@@ -47,14 +48,18 @@ export function fillRow(row, line, told) {
   setAttribute(item, "aria-selected", String(isSelected));
   setAttribute(item, "tabindex", hasFocus ? 0 : -1);
   setAttribute(item, "data-look", look);
+  setAttribute(item, "data-old", isOld);
   setAttribute(row.dot, "data-look", look);
   item.style.setProperty("--level", line.level ?? 1);
   fillName(row, line);
+  setText(row.device, device);
+  setAttribute(row.device, "title", device ? `on device ${device}` : null);
   const isFolded = below !== null && line.open !== true;
   setText(row.below, isFolded ? String(below.count) : "");
   setAttribute(row.below, "data-look", isFolded ? below.worst : null);
-  fillFit(row.fit, part, { look, below });
-  setAttribute(item, "data-tight", isTight(line, row.fit, width - (isFolded ? BADGE_PX : 0)));
+  fillFit(row.fit, part, { look, below, isOld });
+  const taken = (isFolded ? BADGE_PX : 0) + device.length * FIT_PX;
+  setAttribute(item, "data-tight", isTight(line, row.fit, width - taken));
   setText(row.age, age);
   const cause = causeWords(part, errors);
   setText(row.cause, cause);
@@ -70,7 +75,7 @@ function fillHeading(row, { heading, level }) {
   setAttribute(item, "tabindex", null);
   item.style.setProperty("--level", level);
   fillName(row, { name: heading, shown: `${heading}/`, space: "" });
-  for (const empty of [row.below, row.age, row.cause]) setText(empty, "");
+  for (const empty of [row.device, row.below, row.age, row.cause]) setText(empty, "");
   row.fit.replaceChildren();
   row.fit.key = "";
 }
@@ -99,15 +104,17 @@ const [NAME_PX, FIT_PX, LEVEL_PX, BADGE_PX, OTHERS_PX] = [7.3, 6.7, 13, 25, 106]
  *
  * Of a system in which something below is missed, the badge tells that.
  */
-function fillFit(fit, part, { look, below }) {
+function fillFit(fit, part, { look, below, isOld }) {
   const { actual } = part;
+  const old = isOld ? part.last_known : null;
   const wanted = below ? null : missedTarget(part);
   const isAway = look === "unreachable";
-  const key = `${isAway}|${stateWords(actual)}|${wanted ? stateWords(wanted) : ""}`;
+  const key = `${isAway}|${old ? label(old) : ""}|${stateWords(actual)}|${wanted ? stateWords(wanted) : ""}`;
   if (fit.key === key) return;
   fit.key = key;
   fit.title = wanted ? `target ${stateWords(wanted)}, actual ${stateWords(actual)}` : "";
-  if (isAway) return fit.replaceChildren("unreachable");
+  if (old) fit.title = `last known: ${label(old)}`;
+  if (isAway) return fit.replaceChildren(old ? label(old) : "unreachable");
   if (!wanted) return fit.replaceChildren(...actualWords(actual, true));
   const isModeOnly = wanted.state === actual.state && wanted.mode;
   fit.replaceChildren(
@@ -140,11 +147,13 @@ function stateWords(actual) {
 }
 
 /** What a screen reader says of the row, without the age, which would not let it rest. */
-function spoken(name, { part, look, below }, isFolded, cause) {
+function spoken(name, { part, device, isOld, look, below }, isFolded, cause) {
   const wanted = missedTarget(part);
   const said = [
     `${name} ${part.kind ?? "part"}`,
+    device && `on device ${device}`,
     stateWords(part.actual).replace("(*)", "inferred"),
+    isOld && part.last_known && `last known ${label(part.last_known)}`,
     wanted && `target ${stateWords(wanted)}`,
     LOOK_WORDS[look],
     // What a row shows as its pill was said.
