@@ -10,7 +10,9 @@ from typing import Literal, TypeAlias
 
 from api.distribution import installed_version
 from api.http.limits import ServiceLimits
+from api.serving.computers import make_link
 from api.serving.data_folder import MEMORY, data_folder, robot_name
+from api.serving.misuse import MisuseError
 from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
 from domain.state_and_mode import PartName
@@ -29,6 +31,7 @@ from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
 from service.keeper import NO_STORES, Stores
 from service.link.device_end import DeviceEnd
+from service.link.place import Place, place_in
 from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ports import NodeBackend, RobotBackend, SignalSource
@@ -90,10 +93,6 @@ class ServeOptions:
     """Where this computer listens for the others; empty: as in the robot file."""
     insecure_link: bool = False
     """Whether the link may go over a network without certificates."""
-
-
-class MisuseError(Exception):
-    """Options of the command contradict each other; the message says what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,7 +244,7 @@ def _with_simulated(
         what = ("nodes",)
         simulated.vehicle.set_reporting(False, now)
     backend = SimulatedBackend(simulated, clock)
-    link = make_link(options, files, clock)
+    place, link = _link_of(options, files, clock)
     whole, status = _with_sources(files, clock, backend, (backend,), link)
     onboard = make_onboard(files.loaded.model, files.settings, now)
     stores = replace(stores, memories=memories_of(simulated))
@@ -255,7 +254,7 @@ def _with_simulated(
     supervisor.sources, supervisor.link = status, link
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
-    return Composition(supervisor, limits, simulated=parts)
+    return Composition(supervisor, limits, simulated=parts, place=place)
 
 
 def _with_ros2(
@@ -269,7 +268,7 @@ def _with_ros2(
     _require_types(graph, robot.ros2)
     ros = Ros2Backend(share.local_model, robot, graph, clock)
     onboard = make_onboard(files.loaded.model, files.settings, now)
-    link = make_link(options, files, clock)
+    place, link = _link_of(options, files, clock)
     if mocked and not files.is_device:
         signals = MockSignals(now)
         _leave_to_others(share, signals, now)
@@ -284,7 +283,18 @@ def _with_ros2(
     supervisor.sources, supervisor.link = status, link
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
-    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)
+    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway, place=place)
+
+
+def _link_of(
+    options: ServeOptions, files: RobotFiles, clock: Clock
+) -> tuple[Place | None, SupervisorEnd | DeviceEnd | None]:
+    """Return where this computer is among those of the robot, and its end of the link."""
+    place = place_in(files.settings, options.link)
+    if place is None:
+        return None, None
+    model, robot = files.loaded.model, files.settings
+    return place, make_link(place, model, robot, clock, insecure=options.insecure_link)
 
 
 def _with_sources(

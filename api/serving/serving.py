@@ -22,7 +22,6 @@ from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import (
     EXAMPLE,
     Composition,
-    MisuseError,
     RobotFiles,
     ServeOptions,
     compose,
@@ -31,6 +30,7 @@ from api.serving.composition import (
 )
 from api.serving.data_folder import MEMORY
 from api.serving.garbage import Heap
+from api.serving.misuse import MisuseError
 from api.serving.output import Output
 from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError

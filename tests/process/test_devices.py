@@ -1,5 +1,6 @@
 """A robot of several computers, each a process of its own, over zenoh."""
 
+import asyncio
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -122,7 +123,7 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
     assert took_s < RETURN_WITHIN_S + SEEN_S
     assert supervisor.actual()["drive_base"] == ("active", "FAST")
     assert supervisor.actual()["manipulator"] == ("inactive", None)
-    time.sleep(1.0)  # Nothing comes: that can only be waited for.
+    await asyncio.sleep(1.0)  # Nothing comes: that can only be waited for.
     assert arm.actual() == {"manipulator": ("inactive", None)}
     assert base.actual() == {"drive_base": ("active", "FAST")}
     assert supervisor.targets()["manipulator"] == ("active", "STRONG")
