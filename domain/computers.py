@@ -65,6 +65,7 @@ class Connection:
     """Messages of it that were too many or too long, or could not be read."""
 
 
+@dataclass(frozen=True, slots=True)
 class StopView:
     """An emergency stop that is engaged, and where."""
 
