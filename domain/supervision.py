@@ -15,10 +15,7 @@ from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
-<<<<<<< HEAD
 from domain.commands import TellStops
-=======
->>>>>>> lk-supervisor
 from domain.computers import ComputerName
 from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
@@ -92,10 +89,8 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
-<<<<<<< HEAD
     peers: tuple[ComputerName, ...] = ()
     """The other computers of the robot, which stop it as well; empty: it has one computer."""
-=======
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
     """Computers that own nodes; empty: all nodes are those of this one."""
     devices_heard_within: Duration = seconds(1.5)
@@ -110,7 +105,6 @@ class SupervisionSettings:
     def nodes_of_devices(self) -> Mapping[PartName, Sequence[PartName]]:
         """Return by device, whose errors are named as those of parts are, the nodes it owns."""
         return {PartName(name): each.nodes for name, each in self.devices.items()}
->>>>>>> lk-supervisor
 
 
 class Supervision:
