@@ -35,6 +35,7 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         peers=_peers(robot.devices, own),
         devices=devices,
         devices_heard_within=robot.link.lost,
+        lead=robot.to_lead_settings(),
     )
     core = Supervision(model, settings, start)
     navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)

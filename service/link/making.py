@@ -3,7 +3,7 @@
 import secrets
 from collections.abc import Callable
 
-from domain.computers import SUPERVISOR, ComputerName, Incarnation
+from domain.computers import SUPERVISOR, Incarnation
 from domain.devices.settings import DeviceSettings
 from domain.link.device_link import DeviceLink
 from domain.link.messages import Terms
