@@ -91,14 +91,12 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
+    peers: tuple[ComputerName, ...] = ()
+    """The other computers of the robot, which stop it as well; empty: it has one computer."""
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
     """Computers that own nodes; empty: all nodes are those of this one."""
     devices_heard_within: Duration = seconds(1.5)
     """How long rules, fallbacks and reactions wait for devices after a start."""
-    peers: tuple[ComputerName, ...] = ()
-    """The other computers of the robot, which stop it as well; empty: it has one computer."""
-    lead: LeadSettings | None = None
-    """Of a device, which follows a supervisor; None: this computer follows nobody."""
 
     @property
     def device_of(self) -> Mapping[PartName, ComputerName]:
@@ -109,6 +107,9 @@ class SupervisionSettings:
     def nodes_of_devices(self) -> Mapping[PartName, Sequence[PartName]]:
         """Return by device, whose errors are named as those of parts are, the nodes it owns."""
         return {PartName(name): each.nodes for name, each in self.devices.items()}
+
+    lead: LeadSettings | None = None
+    """Of a device, which follows a supervisor; None: this computer follows nobody."""
 
 
 class Supervision:
