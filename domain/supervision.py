@@ -21,7 +21,9 @@ from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
 from domain.devices.device_view import DeviceView
 from domain.devices.devices import Devices
-from domain.devices.settings import DeviceSettings
+from domain.devices.lead import Lead
+from domain.devices.lead_view import LeadView
+from domain.devices.settings import DeviceSettings, LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
@@ -89,6 +91,8 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
+    peers: tuple[ComputerName, ...] = ()
+    """The other computers of the robot, which stop it as well; empty: it has one computer."""
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
     """Computers that own nodes; empty: all nodes are those of this one."""
     devices_heard_within: Duration = seconds(1.5)
@@ -104,8 +108,8 @@ class SupervisionSettings:
         """Return by device, whose errors are named as those of parts are, the nodes it owns."""
         return {PartName(name): each.nodes for name, each in self.devices.items()}
 
-    peers: tuple[ComputerName, ...] = ()
-    """The other computers of the robot, which stop it as well; empty: it has one computer."""
+    lead: LeadSettings | None = None
+    """Of a device, which follows a supervisor; None: this computer follows nobody."""
 
 
 class Supervision:
@@ -148,6 +152,7 @@ class Supervision:
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
         self._reactions = self._reactions_by(displacing, reactions, guards, start)
+        self._lead = self._lead_by(settings.lead, start)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -156,6 +161,8 @@ class Supervision:
             self._emergency_stop,
             devices,
             ModeLimits(settings.signals, parts, health, outbox),
+            # It rejects what is the supervisor's to ask, before anything comes of it.
+            *(() if self._lead is None else (self._lead,)),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -165,7 +172,8 @@ class Supervision:
             self._changing,
             # What sets targets in force, the stronger first.
             self._reactions,
-            *self._displacers(guards, settings.rules, displacing),
+            # A device leaves degrading and climbing back to its supervisor.
+            *(self._displacers(guards, settings.rules, displacing) if self._lead is None else ()),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
@@ -209,6 +217,12 @@ class Supervision:
             self._outbox,
             start,
         )
+
+    def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
+        if settings is None:
+            return None
+        parts, changing, reactions = self._parts, self._changing, self._reactions
+        return Lead(settings, parts, changing, reactions, self._health, self._outbox, start)
 
     def _displacers(
         self, guards: Guards, rules: RuleSettings, displacing: Displacing
@@ -360,6 +374,8 @@ class Supervision:
         Raises:
             PilothouseError: The request would be rejected.
         """
+        if self._lead is not None:
+            self._lead.check(request)
         return self._changing.plan(request)
 
     def change(self, identity: str) -> ChangeView:
@@ -461,6 +477,10 @@ class Supervision:
     def devices(self) -> Mapping[ComputerName, DeviceView]:
         """Return the devices of the robot by name; empty: it has but one computer."""
         return self._devices.views()
+
+    def lead(self) -> LeadView | None:
+        """Return whose word counts at this device; None: this computer follows nobody."""
+        return None if self._lead is None else self._lead.view()
 
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""
