@@ -216,6 +216,8 @@ class PeerStops:
 
     computer: ComputerName
     stops: tuple[PeerStop, ...]
+    is_all: bool = True
+    """False: whoever said so is not dealt with (yet); what was known before stays, too."""
 
 
 @dataclass(frozen=True, slots=True)

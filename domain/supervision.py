@@ -6,20 +6,22 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
-from domain.concern import Concern, settle
+from domain.computers import ComputerName
+from domain.concern import Concern, overrides, settle, takers_of
 from domain.conditions.watched import WatchedConditions
+from domain.devices.device_view import DeviceView
+from domain.devices.devices import Devices
 from domain.devices.lead import Lead
 from domain.devices.lead_view import LeadView
-from domain.devices.settings import LeadSettings
+from domain.devices.settings import DeviceSettings, LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
@@ -69,7 +71,7 @@ from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import VehicleLimits
 
 _SPARE_ROUNDS = 100
@@ -89,6 +91,20 @@ class SupervisionSettings:
     """What is supervised of the checkpoints of nodes."""
     lead: LeadSettings | None = None
     """Of a device, which follows a supervisor; None: this computer follows nobody."""
+    devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
+    """Computers that own nodes; empty: all nodes are those of this one."""
+    devices_heard_within: Duration = seconds(1.5)
+    """How long rules, fallbacks and reactions wait for devices after a start."""
+
+    @property
+    def device_of(self) -> Mapping[PartName, ComputerName]:
+        """Return by node that another computer owns, that computer."""
+        return {node: name for name, each in self.devices.items() for node in each.nodes}
+
+    @property
+    def nodes_of_devices(self) -> Mapping[PartName, Sequence[PartName]]:
+        """Return by device, whose errors are named as those of parts are, the nodes it owns."""
+        return {PartName(name): each.nodes for name, each in self.devices.items()}
 
 
 class Supervision:
@@ -105,13 +121,22 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        parts = self._parts = Parts(model, outbox)
-        causes = ErrorCauses(model, settings.checkpoints)
+        parts = self._parts = Parts(model, outbox, settings.device_of)
+        causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
         health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
+        # What is lost with a device follows from that from the start.
+        devices = self._devices = Devices(
+            settings.devices,
+            settings.devices_heard_within,
+            parts,
+            health.error_list,
+            outbox,
+            start,
+        )
         errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
@@ -129,6 +154,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
+            devices,
             ModeLimits(settings.signals, parts, health, outbox),
             # It rejects what is the supervisor's to ask, before anything comes of it.
             *(() if self._lead is None else (self._lead,)),
@@ -154,7 +180,14 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
-        propagation = Propagation(health.error_list, self.conditions, errors.unheard, outbox, start)
+        propagation = Propagation(
+            health.error_list,
+            self.conditions,
+            errors.unheard,
+            outbox,
+            start,
+            self._devices.unheard,
+        )
         return (
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
@@ -200,10 +233,10 @@ class Supervision:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
         self._health.error_list.mark_start()
         self._outbox.errors.clear()  # What is on from the start is no change.
-        self._takers = _takers(self._concerns)
-        self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
-        self._settling = [c for c in self._concerns if _overrides(c, "settle")]
-        self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
+        self._takers = {TimePassed: (), **takers_of(self._concerns)}
+        self._clocked = [c for c in self._concerns if overrides(c, "wake_at")]
+        self._settling = [c for c in self._concerns if overrides(c, "settle")]
+        self._portioned = [c for c in self._concerns if overrides(c, "go_on")]
         self._has_more = False
         self._max_rounds = _SPARE_ROUNDS + len(self.model.parts)
         self._wake_at = self._next_wake()
@@ -380,13 +413,21 @@ class Supervision:
         return self._health.error_list.view(key)
 
     def errors(self) -> Iterator[ErrorView]:
-        """Yield all errors: the robot's own, then those of the parts in the order of the file."""
+        """Yield all errors: the robot's own, those of devices, then those of the parts.
+
+        Both are in the order of their file.
+        """
         yield from self._health.error_views()
+        for device in self._health.error_list.causes.devices:
+            yield from self.errors_of(device)
         for part in self.model.parts:
             yield from self.errors_of(part)
 
     def errors_of(self, part: PartName) -> Iterator[ErrorView]:
-        """Yield the errors of one part, those that signals raise last; the model must have it."""
+        """Yield the errors of one part, those that signals raise last; or those of a device.
+
+        There must be such a part or device.
+        """
         yield from self._part_errors.views_of(part)
         yield from self._health.error_views(part)
 
@@ -432,22 +473,10 @@ class Supervision:
         """Return whose word counts at this device; None: this computer follows nobody."""
         return None if self._lead is None else self._lead.view()
 
+    def devices(self) -> Mapping[ComputerName, DeviceView]:
+        """Return the devices of the robot by name; empty: it has but one computer."""
+        return self._devices.views()
+
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""
         return self._emergency_stop.view()
-
-
-def _takers(
-    concerns: tuple[Concern, ...],
-) -> Mapping[type, tuple[Callable[[Any, Instant], None], ...]]:
-    """Return the handlers of each class of input, its owner first."""
-    takers: dict[type, tuple[Callable[[Any, Instant], None], ...]] = {TimePassed: ()}
-    for concern in concerns:
-        for kind, take in concern.takes.items():
-            takers[kind] = (*takers.get(kind, ()), take)
-    return takers
-
-
-def _overrides(concern: Concern, method: str) -> bool:
-    """Tell whether a concern overrides `method`; calling the empty ones would only cost time."""
-    return getattr(type(concern), method) is not getattr(Concern, method)

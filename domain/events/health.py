@@ -1,7 +1,7 @@
 """Events of signals, errors, the emergency stop and the state of the robot."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from domain.events.event import Event, because
 from domain.findings import Fact
@@ -115,6 +115,7 @@ class ErrorRaised(Event):
     """An error of the robot or of a part is raised."""
 
     kind = "error.raised"
+    hidden = frozenset({"of_device"})
 
     error: str
     message: str
@@ -126,6 +127,8 @@ class ErrorRaised(Event):
     """No other error explains it."""
     silenced: bool = False
     """It is shelved, or the model suppresses it."""
+    of_device: bool = field(default=False, kw_only=True)
+    """The part is a device, of which another event tells."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name}: {self.message}"
@@ -136,7 +139,8 @@ class ErrorRaised(Event):
 
         An error that is silenced still sets its bit, which other events tell.
         """
-        return not self.silenced and _is_told_by_itself(self.part, self.error, self.root_cause)
+        is_told = self.of_device or self.silenced
+        return not is_told and _is_told_by_itself(self.part, self.error, self.root_cause)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +148,7 @@ class ErrorCleared(Event):
     """An error of the robot or of a part is cleared."""
 
     kind = "error.cleared"
+    hidden = frozenset({"of_device"})
 
     error: str
     part: PartName | None = None
@@ -152,6 +157,8 @@ class ErrorCleared(Event):
     """No other error explained it."""
     silenced: bool = False
     """As in `error.raised`."""
+    of_device: bool = field(default=False, kw_only=True)
+    """As in `error.raised`."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name} cleared"
@@ -159,7 +166,8 @@ class ErrorCleared(Event):
     @property
     def notable(self) -> bool:
         """As of `error.raised`."""
-        return not self.silenced and _is_told_by_itself(self.part, self.error, self.root_cause)
+        is_told = self.of_device or self.silenced
+        return not is_told and _is_told_by_itself(self.part, self.error, self.root_cause)
 
 
 def _is_told_by_itself(part: PartName | None, error: str, root_cause: bool) -> bool:

@@ -6,6 +6,7 @@ from types import ModuleType
 from domain.events import (
     announcing,
     changes,
+    devices,
     driving,
     health,
     lead,
@@ -24,7 +25,18 @@ def _kinds(*modules: ModuleType) -> Iterator[type[Event]]:
                 yield item
 
 
-_MODULES = (announcing, parts, changes, health, driving, reactions, service, targets, lead)
+_MODULES = (
+    announcing,
+    parts,
+    changes,
+    devices,
+    health,
+    driving,
+    lead,
+    reactions,
+    service,
+    targets,
+)
 
 EVENTS: Mapping[str, type[Event]] = {
     kind.kind: kind for kind in sorted(_kinds(*_MODULES), key=lambda item: item.kind)

@@ -102,14 +102,20 @@ Told: TypeAlias = NodeReport | NodeAnswer | Readings | SourceFault | ErrorReport
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What a device tells of its parts: at once what changed, and each second everything."""
+    """What a device tells of its parts: at once what changed, and each second everything.
+
+    `seq` counts reports without a gap. Stamps of readings are relative to the sending of the
+    report, and so negative: the clocks of two computers have nothing to do with each other.
+    """
 
     sender: ComputerName
     incarnation: Incarnation
     seq: int
     items: tuple[Told, ...]
     complete: bool = False
-    """Whether it has a report of every node of the device; such a report leaves nothing out."""
+    """Whether it leaves nothing out: of a node or signal that is not in it, nothing is known."""
+    session: Session | None = None
+    """Of the device when it was made; one of before a loss is out of date."""
 
 
 @dataclass(frozen=True, slots=True)

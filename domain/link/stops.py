@@ -1,0 +1,161 @@
+"""Emergency stops over the link: those of this computer, and those of another one."""
+
+from collections import deque
+from collections.abc import Iterable, Sequence
+
+from domain.computers import Incarnation, PeerStop, StopId
+from domain.link.messages import EngagedStop
+from domain.timebase import Instant
+
+MAX_STOPS = 64
+"""Stops of one process that are told and taken in at most; the robot is stopped by one."""
+_MAX_PROCESSES = 8
+"""Processes of one name whose stops are known at most."""
+
+
+class OwnStops:
+    """The stops that are engaged on this computer, as every other one is told."""
+
+    def __init__(self) -> None:
+        """Begin without a stop."""
+        self.version = 0
+        """Rises with each change."""
+        self._stops: tuple[PeerStop, ...] = ()
+        self._released: set[StopId] = set()
+        """Those whose release the core was told; it has not said yet that they are."""
+
+    def set(self, stops: Iterable[PeerStop]) -> bool:
+        """Set all stops; return whether that is a change."""
+        kept = tuple(stops)[:MAX_STOPS]
+        if kept == self._stops:
+            return False
+        self._stops = kept
+        self._released &= {stop.id for stop in kept}
+        self.version += 1
+        return True
+
+    def told(self, now: Instant) -> tuple[EngagedStop, ...]:
+        """Return them as they are told to others now."""
+        return tuple(
+            EngagedStop(stop.id, stop.by, stop.reason, max(now - stop.since, 0))
+            for stop in self._stops
+        )
+
+    def take_release(self, asked: Iterable[StopId]) -> tuple[StopId, ...]:
+        """Return those of the stops that somebody releases now, for the first time."""
+        own = {stop.id for stop in self._stops} - self._released
+        taken = tuple(dict.fromkeys(stop for stop in asked if stop in own))
+        self._released.update(taken)
+        return taken
+
+
+class _StopsOf:
+    """What one process says of its stops."""
+
+    def __init__(self) -> None:
+        self.version = -1
+        self.stops: dict[StopId, PeerStop] = {}
+
+
+class HeardStops:
+    """The stops that are engaged on another computer, by the process that says so.
+
+    Anybody who answers by its name can engage one. A stop ends when its own process no longer has
+    it, or when that process was replaced by another one that is dealt with: what a store did not
+    bring back is not engaged there. A stop of a process that is neither dealt with nor heard any
+    more is ended by a person who names it.
+    """
+
+    def __init__(self) -> None:
+        """Begin without a stop, and without a word of the computer."""
+        self._by: dict[Incarnation, _StopsOf] = {}
+        self._ended = deque[StopId](maxlen=MAX_STOPS)
+        """Stops of processes that were replaced: they may arrive late."""
+        self._told: tuple[frozenset[StopId], bool] | None = None
+
+    @property
+    def ids(self) -> frozenset[StopId]:
+        """Return the ids of all of them."""
+        return frozenset(stop for of in self._by.values() for stop in of.stops)
+
+    def version_of(self, process: Incarnation | None) -> int:
+        """Return the last version of a process that was taken in; 0: none."""
+        known = self._by.get(process) if process is not None else None
+        return max(known.version, 0) if known is not None else 0
+
+    def ids_of(self, process: Incarnation) -> frozenset[StopId]:
+        """Return the ids of the stops of one process."""
+        return frozenset(self._by[process].stops) if process in self._by else frozenset()
+
+    def take(
+        self,
+        process: Incarnation,
+        version: int,
+        stops: Iterable[EngagedStop],
+        now: Instant,
+        *,
+        lives: bool,
+        is_dealt_with: bool,
+    ) -> None:
+        """Take in what a process says: all its stops.
+
+        Args:
+            process: Who says so.
+            version: Of what it says; an older one is no news.
+            stops: Its stops, with their ages.
+            now: The current time.
+            lives: Whether it is known to have said so just now, so that no stop is an old one.
+            is_dealt_with: Whether it is the one that answers for its computer.
+        """
+        known = self._by.get(process) or _StopsOf()
+        if version <= known.version:
+            return
+        said = tuple(stops)[:MAX_STOPS]
+        taken = said if lives else tuple(stop for stop in said if stop.id not in self._ended)
+        if not is_dealt_with and process not in self._by and not self._has_room_for(taken):
+            return
+        self._by[process] = known
+        if len(taken) == len(said):
+            known.version = version
+        known.stops = {
+            stop.id: known.stops.get(stop.id)
+            or PeerStop(stop.id, stop.by, stop.reason, now - max(stop.age, 0))
+            for stop in taken
+        }
+
+    def replace(self, process: Incarnation) -> None:
+        """End all stops of a process that was replaced."""
+        replaced = self._by.pop(process, None)
+        if replaced is not None:
+            self._ended.extend(replaced.stops)
+
+    def end(self, process: Incarnation, stops: Iterable[StopId]) -> None:
+        """End stops of a process that nobody can ask, and that a person names."""
+        known = self._by.get(process)
+        if known is not None:
+            for stop in stops:
+                known.stops.pop(stop, None)
+            if not known.stops:
+                del self._by[process]
+
+    def processes(self) -> tuple[Incarnation, ...]:
+        """Return all processes that said something."""
+        return tuple(self._by)
+
+    def news(self, *, is_all: bool) -> tuple[tuple[PeerStop, ...], bool] | None:
+        """Return all stops, and whether there are no others, if that is news; None: it is not.
+
+        Args:
+            is_all: Whether the computer itself is dealt with, and says what is engaged there.
+        """
+        ids = self.ids
+        known = self._told or (frozenset(), False)
+        if (ids, is_all) == known:
+            return None
+        self._told = (ids, is_all)
+        stops = tuple(stop for of in self._by.values() for stop in of.stops.values())
+        return stops[:MAX_STOPS], is_all
+
+    def _has_room_for(self, stops: Sequence[EngagedStop]) -> bool:
+        """Tell whether one more process can be remembered; without a stop there is no need to."""
+        return bool(stops) and len(self._by) < _MAX_PROCESSES
