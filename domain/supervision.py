@@ -15,6 +15,7 @@ from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
+from domain.commands import TellStops
 from domain.computers import ComputerName
 from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
@@ -103,6 +104,9 @@ class SupervisionSettings:
         """Return by device, whose errors are named as those of parts are, the nodes it owns."""
         return {PartName(name): each.nodes for name, each in self.devices.items()}
 
+    peers: tuple[ComputerName, ...] = ()
+    """The other computers of the robot, which stop it as well; empty: it has one computer."""
+
 
 class Supervision:
     """The supervision of one robot: its concerns, and the order in which they act."""
@@ -121,7 +125,7 @@ class Supervision:
         parts = self._parts = Parts(model, outbox, settings.device_of)
         causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
         health = self._health = Health(settings.signals, outbox, start, causes)
-        stop = self._emergency_stop = EmergencyStop(health, outbox)
+        stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
@@ -461,6 +465,10 @@ class Supervision:
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""
         return self._emergency_stop.view()
+
+    def stops_to_tell(self) -> TellStops:
+        """Return what other computers of the robot are to know of the stops of this one."""
+        return self._emergency_stop.told()
 
 
 def _takers(
