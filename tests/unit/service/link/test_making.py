@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import AsyncIterator
+from typing import Any
 
 import pytest
 
@@ -31,7 +32,7 @@ class Ends:
         self.delivered: dict[str, list[BackendMessage]] = {}
         self._running: list[asyncio.Task[None]] = []
 
-    def start(self, name: str, model: SmhModel | None = None, **more: object) -> LinkEnd:
+    def start(self, name: str, model: SmhModel | None = None, **more: Any) -> LinkEnd:
         """Make the end of a computer, and let it run."""
         model, robot = model or actuation_model(), settings_of(name, **more)
         place = place_in(robot)
