@@ -50,9 +50,7 @@ def _over_zenoh(place: Place, robot: RobotSettings, *, insecure: bool) -> Link:
         ) from error
     certificates = _certificates(place, robot)
     try:
-        return ZenohLink(
-            place.name, place.others, place.endpoints, certificates, insecure=insecure
-        )
+        return ZenohLink(place.name, place.others, place.endpoints, certificates, insecure=insecure)
     except InvalidValueError as error:
         raise MisuseError(error.message) from error
 
