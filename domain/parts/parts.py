@@ -395,6 +395,7 @@ class Parts(Concern):
             reachable=self._reachability.reaches(part),
             change=self.change_of(part),
             device=self._devices.get(part),
+            last_known=None if system else self.inference.last_known(part),
         )
 
 

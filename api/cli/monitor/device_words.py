@@ -11,10 +11,10 @@ Json: TypeAlias = Mapping[str, Any]
 _WORDS = {"lost": "lost", "conflict": "in conflict", "never_seen": "not seen yet", "late": "late"}
 """What each connection is called that is not as it should be, the worst first."""
 _LEADS = {
-    "never_connected": "no supervisor yet",
-    "following": "the supervisor's word counts",
+    "nobody": "no supervisor yet",
+    "supervisor": "the supervisor's word counts",
     "cut_off": "cut off",
-    "acting_alone": "acts alone",
+    "device": "acts alone",
 }
 _NAMED = 3
 
@@ -59,14 +59,14 @@ def not_stopped_words(devices: Mapping[str, Json]) -> str:
 
 def own_words(this: Json) -> str:
     """Return which device the service runs on, and whose word counts there."""
-    return f"device {this['device']}: {_LEADS.get(this['lead'], this['lead'])}"
+    return f"device {this['device']}: {_LEADS[this['lead']]}"
 
 
 def heard_last(device: Json | None) -> str | None:
     """Return when a device that is away was heard last; None: it is heard, or never was."""
     if device is None or not is_away(device) or device["state"] == "never_seen":
         return None
-    return device["heard_at"] or device["since_at"]
+    return str(device["heard_at"] or device["since_at"])
 
 
 def _named(names: Sequence[str]) -> str:

@@ -58,15 +58,15 @@ export function heardLast(device) {
 }
 
 const LEADS = {
-  never_connected: "no supervisor yet",
-  following: "the supervisor's word counts",
+  nobody: "no supervisor yet",
+  supervisor: "the supervisor's word counts",
   cut_off: "cut off",
-  acting_alone: "acts alone",
+  device: "acts alone",
 };
 
 /** On the page of a device: which it is, and whose word counts. */
 export function ownWords({ device, lead }) {
-  return `DEVICE ${device}: ${LEADS[lead] ?? lead}`;
+  return `${device}: ${LEADS[lead]}`;
 }
 
 /** What a device would do by itself: "Cut off for 2 s, drive_base goes to inactive." */

@@ -19,7 +19,7 @@ from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.event_log import Gap
 from service.supervisor import Supervisor
-from tests.support.frames import error_view, event, frame, part_view, signal_view
+from tests.support.frames import device_view, error_view, event, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor
 
 ALL = STATE_TOPICS
@@ -137,6 +137,16 @@ def test_errors_are_sent_by_name_when_they_changed(encoder: StreamEncoder) -> No
     assert (shown["errors"]["arm.UNREACHABLE"]["part"], quiet.get("errors")) == ("arm", None)
 
 
+def test_devices_are_sent_by_name_when_they_changed(encoder: StreamEncoder) -> None:
+    arm = device_view("arm")
+
+    shown = read(encoder.frame(frame(2, devices=[arm]), 0, ALL))
+    quiet = read(encoder.frame(frame(3), 0, ALL))
+
+    assert shown["devices"]["arm"]["state"] == "connected"
+    assert "devices" not in quiet
+
+
 async def test_errors_are_encoded_ahead_also_for_clients_that_want_no_parts(
     encoder: StreamEncoder, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -168,6 +178,7 @@ def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -
         ({"parts"}, {"parts"}),
         ({"signals", "events"}, {"signals"}),
         ({"errors"}, {"errors"}),
+        ({"devices"}, {"devices"}),
         ({"task"}, {"task"}),
         ({"vehicle"}, {"vehicle"}),
         ({"holds"}, {"holds"}),

@@ -11,6 +11,8 @@ def test_what_has_not_changed_is_left_out_of_a_frame() -> None:
         "signals",
         "errors",
         "reactions",
+        "devices",
+        "this_device",
         "task",
         "vehicle",
         "holds",
@@ -18,12 +20,12 @@ def test_what_has_not_changed_is_left_out_of_a_frame() -> None:
     }
 
 
-def test_what_is_left_out_is_not_null_except_for_a_task_that_is_over() -> None:
+def test_what_is_left_out_is_not_null_except_for_what_there_may_not_be() -> None:
     nullable = [
         name for name, schema in SCHEMA["properties"].items() if {"type": "null"} in kinds(schema)
     ]
 
-    assert nullable == ["task"]
+    assert nullable == ["this_device", "task"]
     assert all("default" not in schema for schema in SCHEMA["properties"].values())
 
 
