@@ -34,9 +34,14 @@ class DeviceState(StrEnum):
     """Whoever answers by this name must not be dealt with."""
 
 
+def computer_words(computer: ComputerName) -> str:
+    """Return a computer in words, such as "device arm"."""
+    return "the supervisor" if computer == SUPERVISOR else f"device {computer}"
+
+
 @dataclass(frozen=True, slots=True)
 class PeerStop:
-    """An emergency stop that is engaged on another computer."""
+    """An emergency stop that one computer tells another of: it is engaged on the one that tells."""
 
     id: StopId
     by: str
@@ -58,3 +63,15 @@ class Connection:
     """Share of the beats of the last seconds that did not come; None: none has come so far."""
     dropped: int = 0
     """Messages of it that were too many or too long, or could not be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class StopView:
+    """An emergency stop that is engaged, and where."""
+
+    id: StopId
+    computer: ComputerName | None
+    """None: this one."""
+    by: str
+    reason: str
+    since: Instant

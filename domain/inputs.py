@@ -281,11 +281,13 @@ class CancelRequest:
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopRequest:
-    """Engage or release the emergency stop."""
+    """Engage the emergency stop of this computer, or release stops on all computers."""
 
     engaged: bool
     reason: str
     actor: Actor = NOBODY
+    stops: tuple[StopId, ...] | None = None
+    """Those that are released, which a person saw; None: all that are known now."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -418,6 +420,8 @@ class Restored:
     next_task: int = 1
     stop_because: str = ""
     """Why the emergency stop is engaged, whatever is kept; empty: it is as it was kept."""
+    run: str = ""
+    """Name of this run, unlike that of any other; empty: it has none."""
 
     @property
     def is_restart(self) -> bool:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from domain.computers import ComputerName, PeerStop
 from domain.findings import Fact
 from domain.identifiers import ChangeId, TaskId
 from domain.lifecycle import LifecycleState, Transition
@@ -86,17 +87,32 @@ class KeptChange:
 
 @dataclass(frozen=True, slots=True)
 class KeptEmergencyStop:
-    """The emergency stop."""
+    """The emergency stop of this computer."""
 
     engaged: bool
     by: str
     reason: str
     since: Instant
+    id: str = ""
+    """As peers know it; empty: it is not engaged, or an older release kept it."""
 
     @property
     def name(self) -> str:
         """Return its name among those of its kind; there is one."""
         return ""
+
+
+@dataclass(frozen=True, slots=True)
+class KeptPeerStops:
+    """Emergency stops that were engaged on another computer when that was heard last."""
+
+    computer: ComputerName
+    stops: tuple[PeerStop, ...]
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.computer
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,6 +329,7 @@ Kept: TypeAlias = (
     | KeptEffectiveTarget
     | KeptChange
     | KeptEmergencyStop
+    | KeptPeerStops
     | KeptError
     | KeptUnacknowledged
     | KeptShelf

@@ -8,6 +8,7 @@ from domain.kept import (
     KeptEmergencyStop,
     KeptError,
     KeptHold,
+    KeptPeerStops,
     KeptProgress,
     KeptTarget,
     KeptTask,
@@ -42,7 +43,10 @@ def _described(restored: Restored) -> ServiceRestored:
     def count(kind: type) -> int:
         return sum(isinstance(value, kind) for value in restored.kept)
 
-    stops = [value for value in restored.kept if isinstance(value, KeptEmergencyStop)]
+    is_stopped = any(
+        value.engaged if isinstance(value, KeptEmergencyStop) else isinstance(value, KeptPeerStops)
+        for value in restored.kept
+    )
     ended = {
         value.task
         for value in restored.kept
@@ -59,6 +63,6 @@ def _described(restored: Restored) -> ServiceRestored:
         tasks=sum(task.id not in ended for task in tasks),
         holds=count(KeptHold),
         errors=len(unacknowledged),
-        emergency_stop=bool(restored.stop_because) or any(stop.engaged for stop in stops),
+        emergency_stop=bool(restored.stop_because) or is_stopped,
         reason=restored.stop_because,
     )

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal, NamedTuple
 
+from domain.computers import ComputerName, StopView
 from domain.findings import Blocker, Fact
 from domain.identifiers import ChangeId, TaskId
 from domain.inputs import ChangeRequest, SignalValue
@@ -405,7 +406,7 @@ class ErrorView:
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopView:
-    """The latch that only a person releases."""
+    """The latch that only a person releases: engaged while a stop is, on any computer."""
 
     engaged: bool
     by: str | None
@@ -414,6 +415,13 @@ class EmergencyStopView:
     standstill_at: Instant | None
     """When the vehicle was first seen at standstill since, or since it was found moving all the
     same; None: not yet, or no vehicle."""
+    stops: tuple[StopView, ...] = ()
+    """All that are engaged, the oldest first; by, reason and since are those of the first."""
+    waits_for: tuple[ComputerName, ...] = ()
+    """Computers that were asked to release a stop of theirs, and did not say yet that they did."""
+    not_heard: tuple[ComputerName, ...] = ()
+    """While it is engaged, computers that cannot be heard: they may not know of it, and their stops
+    stay engaged."""
 
 
 class TaskPhase(StrEnum):

@@ -15,6 +15,8 @@ from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
+from domain.commands import TellStops
+from domain.computers import ComputerName
 from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
@@ -84,6 +86,8 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
+    peers: tuple[ComputerName, ...] = ()
+    """The other computers of the robot, which stop it as well; empty: it has one computer."""
 
 
 class Supervision:
@@ -103,7 +107,7 @@ class Supervision:
         parts = self._parts = Parts(model, outbox)
         causes = ErrorCauses(model, settings.checkpoints)
         health = self._health = Health(settings.signals, outbox, start, causes)
-        stop = self._emergency_stop = EmergencyStop(health, outbox)
+        stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
@@ -414,6 +418,10 @@ class Supervision:
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""
         return self._emergency_stop.view()
+
+    def stops_to_tell(self) -> TellStops:
+        """Return what other computers of the robot are to know of the stops of this one."""
+        return self._emergency_stop.told()
 
 
 def _takers(

@@ -12,7 +12,7 @@ from domain.actor import SERVICE
 from domain.commands import LinkCommand, PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
-from domain.inputs import HoldRequest, Input, ServiceStall
+from domain.inputs import HoldRequest, Input, Restored, ServiceStall
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
@@ -160,10 +160,18 @@ class Supervisor:
             "tick": self.publisher.run(),
         }
         if self.link is not None:
+            self._tell_stops(self.link)
             work["link"] = self.link.run(self.deliver)
         if self._keeper is not None:
             work["keeper"] = self._keeper.run()
         await run_forever(work)
+
+    def _tell_stops(self, link: ComputersLink) -> None:
+        """Let the link know which stops are engaged here before it says that there is none."""
+        if self.journal is None:
+            # Nothing was restored: the core does not know yet how this run is named.
+            self.submit(Restored(run=self.epoch))
+        link.send(self.core.stops_to_tell())
 
     def submit(self, given: Input) -> Outputs:
         """Pass an input to the core.

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from domain.computers import ComputerName, StopId, computer_words
 from domain.events.event import Event, because
 from domain.findings import Fact
 from domain.inputs import SignalValue
@@ -220,7 +221,7 @@ class ErrorAcknowledged(Event):
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopEngaged(Event):
-    """The emergency stop is engaged."""
+    """The emergency stop is engaged on this computer."""
 
     kind = "emergency_stop.engaged"
     is_input = True
@@ -233,15 +234,69 @@ class EmergencyStopEngaged(Event):
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopReleased(Event):
-    """The emergency stop is released."""
+    """The emergency stop of this computer is released."""
 
     kind = "emergency_stop.released"
     is_input = True
 
+    optional = frozenset({"still_engaged_at"})
+
+    reason: str
+    still_engaged_at: tuple[ComputerName, ...] | None = None
+    """Other computers of the robot on which a stop is engaged; None: there is none."""
+
+    def _words(self) -> str:
+        if not self.still_engaged_at:
+            return "emergency stop released"
+        where = ", ".join(map(computer_words, self.still_engaged_at))
+        return f"emergency stop released here; one is still engaged at {where}"
+
+
+@dataclass(frozen=True, slots=True)
+class PeerStopEngaged(Event):
+    """An emergency stop is engaged on another computer of the robot, and so stops all of it."""
+
+    kind = "emergency_stop.peer_engaged"
+    is_input = True
+
+    computer: ComputerName
+    stop: StopId
+    by: str
+    """Who engaged it there."""
     reason: str
 
     def _words(self) -> str:
-        return "emergency stop released"
+        by = f" by {self.by}" if self.by else ""
+        engaged = f"emergency stop engaged at {computer_words(self.computer)}{by}"
+        return because(engaged, self.reason)
+
+
+@dataclass(frozen=True, slots=True)
+class PeerStopReleased(Event):
+    """An emergency stop on another computer of the robot is released."""
+
+    kind = "emergency_stop.peer_released"
+    is_input = True
+
+    computer: ComputerName
+    stop: StopId
+
+    def _words(self) -> str:
+        return f"emergency stop at {computer_words(self.computer)} released"
+
+
+@dataclass(frozen=True, slots=True)
+class StopReleaseAsked(Event):
+    """Another computer of the robot is asked to release emergency stops that are engaged there."""
+
+    kind = "emergency_stop.release_asked"
+    is_input = True
+
+    computer: ComputerName
+    stops: tuple[StopId, ...]
+
+    def _words(self) -> str:
+        return f"{computer_words(self.computer)} asked to release its emergency stop"
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ from domain.findings import Blocker
 from domain.health.error_causes import NO_CAUSES, ErrorCauses
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
+from domain.health.signal_monitor import StopCause
 from domain.health.signals import (
     DECLARED_BIT,
     ESTOP,
@@ -163,14 +164,14 @@ class Health(Concern):
             self._tell(self._manager.acknowledge(key, now), now)
             self._robot_errors.follow_acknowledgement(key, now)
 
-    def press_stop(self, since: Instant | None, now: Instant) -> None:
+    def press_stop(self, causes: tuple[StopCause, ...], now: Instant) -> None:
         """Raise ESTOP for the emergency stop, or remove that cause.
 
         Args:
-            since: When it was engaged; None: it is released.
+            causes: Why it is engaged, one for each computer; empty: it is released.
             now: The current time.
         """
-        self._tell(self._manager.set_emergency_stop(since, now), now)
+        self._tell(self._manager.set_emergency_stop(causes, now), now)
 
     def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> None:
         """Put another limit of a signal in force, since a part is in another mode.

@@ -28,6 +28,13 @@ from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
 
 
+class StopCause(NamedTuple):
+    """Something other than a reading that presses a stop."""
+
+    message: str
+    since: Instant
+
+
 class SignalState(NamedTuple):
     """What can change about a signal; a tuple, since there are thousands a second."""
 
@@ -73,7 +80,7 @@ class SignalMonitor:
         self._cause: Bound | None = None
         self._counted: Duration = 0
         """How long it had counted when the error was raised."""
-        self._engaged_since: Instant | None = None
+        self._engaged: tuple[StopCause, ...] = ()
         self.fault: SourceFault | None = None
         """The last failure of a source that it did not end by a reading."""
         self._measured_before = ""
@@ -122,15 +129,15 @@ class SignalMonitor:
         self.fault = fault
         self.judge(now)
 
-    def set_engaged(self, since: Instant | None, now: Instant) -> None:
+    def set_engaged(self, causes: tuple[StopCause, ...], now: Instant) -> None:
         """Press or release the stop independently of its sources; this takes effect at once.
 
         Args:
-            since: When it was pressed; None: it is released.
+            causes: All that press it; empty: it is released.
             now: The current time.
         """
-        if (since is None) is not (self._engaged_since is None):
-            self._engaged_since = since
+        if causes != self._engaged:
+            self._engaged = causes
             self.judge(now)
 
     def restore(self, error: str, since: Instant, measured: str, now: Instant) -> None:
@@ -206,7 +213,7 @@ class SignalMonitor:
         if is_stale and not self._counts_last_good:
             # What is not heard is not known to be bad.
             self._counting_since = None
-        if self._engaged_since is not None:
+        if self._engaged:
             met = list(self.settings.bounds)
         cause = self._find_cause(met, now)
         if cause is not self._cause:
@@ -220,7 +227,7 @@ class SignalMonitor:
             cause is None
             and self._counting_since is None
             and not self.is_on
-            and self._engaged_since is None
+            and not self._engaged
             and self.fault is None
             and not self.settings.spec.is_stop
         )
@@ -323,9 +330,8 @@ class SignalMonitor:
         return kept_reason(self.settings, self._value_slot)
 
     def _stop_reasons(self, slot: ErrorSlot) -> Iterator[Blocker]:
-        if self._engaged_since is not None:
-            message = "emergency stop is engaged"
-            yield self._reason(slot, message, value=True, since=self._engaged_since)
+        for message, since in self._engaged:
+            yield self._reason(slot, message, value=True, since=since)
         if pressing := self.readings.pressing:
             message = pressed_reason(self.readings, self.settings.spec)
             yield self._reason(slot, message, value=True, since=pressing[0].since)
@@ -392,7 +398,7 @@ class SignalMonitor:
         ]
 
     def _is_due(self, bound: Bound, now: Instant) -> bool:
-        if self._engaged_since is not None:
+        if self._engaged:
             return True
         return self._counting_since is not None and now - self._counting_since >= bound.for_
 

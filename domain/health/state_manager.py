@@ -21,7 +21,7 @@ from domain.findings import Blocker
 from domain.health.error_registry import ErrorChanges, ErrorRegistry
 from domain.health.held_readings import HeldReadings
 from domain.health.monitor_graph import faults_of_monitors, fed_by, number_of
-from domain.health.signal_monitor import SignalMonitor, SignalState
+from domain.health.signal_monitor import SignalMonitor, SignalState, StopCause
 from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, ModeLimit, SignalSettings
 from domain.health.window_monitor import WindowMonitor
 from domain.inputs import Reading, Readings, SourceFault
@@ -257,15 +257,15 @@ class StateManager:
             self._touched(fault.signal).note_fault(fault, now)
         return self._build(gathered)
 
-    def set_emergency_stop(self, since: Instant | None, now: Instant) -> HealthChanges:
+    def set_emergency_stop(self, causes: tuple[StopCause, ...], now: Instant) -> HealthChanges:
         """Raise ESTOP for the emergency stop, which no reading releases, or remove that cause.
 
         Args:
-            since: When it was engaged; None: it is released.
+            causes: Why it is engaged, one for each computer; empty: it is released.
             now: The current time.
         """
         with self._gathering(now) as gathered:
-            self._touched(ESTOP_SIGNAL).set_engaged(since, now)
+            self._touched(ESTOP_SIGNAL).set_engaged(causes, now)
         return self._build(gathered)
 
     def restore(self, errors: Iterable[KeptError], now: Instant) -> HealthChanges:

@@ -77,6 +77,7 @@ NAMES: Mapping[type, str] = {
     kept.KeptEffectiveTarget: "kept_effective_target",
     kept.KeptChange: "kept_change",
     kept.KeptEmergencyStop: "kept_emergency_stop",
+    kept.KeptPeerStops: "kept_peer_stops",
     kept.KeptError: "kept_error",
     kept.KeptUnacknowledged: "kept_unacknowledged",
     kept.KeptShelf: "kept_shelf",

@@ -164,7 +164,12 @@ class MemoryJournal:
         for number, row in store.events:
             epochs[store.runs[number].epoch] = row.id
         first = Restored(
-            tuple(store.kept.values()), self._number, ids[EVENT], ids[CHANGE], ids[TASK]
+            tuple(store.kept.values()),
+            self._number,
+            ids[EVENT],
+            ids[CHANGE],
+            ids[TASK],
+            run=self.boot.epoch,
         )
         return Found(first, not store.runs, store.last_at, epochs, dict(store.own))
 

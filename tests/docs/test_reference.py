@@ -19,6 +19,7 @@ from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.actor import Actor
 from domain.changes.admission import ADVISORY
+from domain.computers import ComputerName, PeerStop, StopId
 from domain.conditions.condition import Condition
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
@@ -36,10 +37,12 @@ from domain.inputs import (
     BackendStatus,
     CheckpointReport,
     DriveStatus,
+    EmergencyStopRequest,
     ErrorReport,
     Input,
     ModeRequest,
     NodeReport,
+    PeerStops,
     Restored,
     ServiceStall,
     ShelveRequest,
@@ -222,6 +225,14 @@ def a_lost_backend() -> list[RecordedEvent]:
     return told(BackendStatus(available=False, reason="no network"), BackendStatus(available=True))
 
 
+def a_stop_on_another_computer() -> list[RecordedEvent]:
+    arm = ComputerName("arm")
+    stop = PeerStop(StopId("arm-1"), "ada", "a child", 0)
+    release = EmergencyStopRequest(False, "the track is clear", Actor("ada"))
+    engage = EmergencyStopRequest(True, "me too", Actor("bert"))
+    return told(PeerStops(arm, (stop,)), engage, release, PeerStops(arm, ()), peers=(arm,))
+
+
 def a_lost_drive_process() -> list[RecordedEvent]:
     return told(DriveStatus(available=False, reason="it has ended"), DriveStatus(available=True))
 
@@ -334,9 +345,9 @@ def a_wait() -> list[RecordedEvent]:
     return robot.events
 
 
-def told(*inputs: Input) -> list[RecordedEvent]:
+def told(*inputs: Input, peers: tuple[ComputerName, ...] = ()) -> list[RecordedEvent]:
     """Return the events of a core that is given what no scenario holds."""
-    core = Supervision(actuation_model(), SupervisionSettings(), 0)
+    core = Supervision(actuation_model(), SupervisionSettings(peers=peers), 0)
     return [event for given in inputs for event in core.handle(given, 1).events]
 
 
@@ -365,6 +376,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         soft_brakes,
         a_sick_robot,
         a_lost_backend,
+        a_stop_on_another_computer,
         a_lost_drive_process,
         a_write,
         a_stall,

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from domain.health.signal_monitor import StopCause
 from domain.health.signals import SignalSettings, default_signals
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Reading, Readings, SignalValue
@@ -45,7 +46,8 @@ class Robot:
 
     def engage(self, at_s: float, engaged: bool = True) -> HealthChanges:
         now = START + seconds(at_s)
-        return self.health.set_emergency_stop(now if engaged else None, now)
+        causes = (StopCause("emergency stop is engaged", now),) if engaged else ()
+        return self.health.set_emergency_stop(causes, now)
 
     @property
     def errors(self) -> tuple[str, ...]:

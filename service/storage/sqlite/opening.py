@@ -129,7 +129,7 @@ def _found(left: Left, boot: Boot, ids: Mapping[IdKind, int]) -> Found:
     stop_because = _stop_because(left)
     newest = left.newest
     return Found(
-        Restored(values, ids[BOOT], ids[EVENT], ids[CHANGE], ids[TASK], stop_because),
+        Restored(values, ids[BOOT], ids[EVENT], ids[CHANGE], ids[TASK], stop_because, boot.epoch),
         left.is_new,
         to_datetime(newest.wall_ns) if newest and newest.wall_ns else None,
         {epoch: last for file in left.files for epoch, last in file.epochs.items() if last},

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from domain.computers import SUPERVISOR, ComputerName, StopId
 from domain.events.announcing import ErrorChattering, ErrorShelved, ErrorUnshelved
 from domain.events.changes import (
     BackendAvailable,
@@ -52,6 +53,8 @@ from domain.events.health import (
     ErrorCleared,
     ErrorRaised,
     ErrorReported,
+    PeerStopEngaged,
+    PeerStopReleased,
     PropagationNotSeen,
     SignalLimitsChanged,
     SignalNotRead,
@@ -59,6 +62,7 @@ from domain.events.health import (
     SignalRead,
     SignalSettled,
     SignalSkewed,
+    StopReleaseAsked,
     SystemStateChanged,
 )
 from domain.events.parts import (
@@ -157,7 +161,26 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "drive.available": (DriveAvailable(),),
     "drive.unavailable": (DriveUnavailable(reason='Größe ≤ 3 — "gripper\\jam"'),),
     "emergency_stop.engaged": (EmergencyStopEngaged(reason='Größe ≤ 3 — "gripper\\jam"'),),
-    "emergency_stop.released": (EmergencyStopReleased(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "emergency_stop.peer_engaged": (
+        PeerStopEngaged(
+            computer=ComputerName("arm"),
+            stop=StopId("0f0f-3"),
+            by="ada",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "emergency_stop.peer_released": (
+        PeerStopReleased(computer=ComputerName("arm"), stop=StopId("0f0f-3")),
+    ),
+    "emergency_stop.release_asked": (
+        StopReleaseAsked(computer=ComputerName("arm"), stops=(StopId("0f0f-3"),)),
+    ),
+    "emergency_stop.released": (
+        EmergencyStopReleased(reason='Größe ≤ 3 — "gripper\\jam"'),
+        EmergencyStopReleased(
+            reason="the track is clear", still_engaged_at=(ComputerName("arm"), SUPERVISOR)
+        ),
+    ),
     "emergency_stop.standstill": (EmergencyStopStandstill(),),
     "error.acknowledged": (
         ErrorAcknowledged(error="LOW_BATTERY"),

@@ -238,6 +238,12 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
             actor=Actor(name="", way="", address=""),
         ),
+        EmergencyStopRequest(
+            engaged=False,
+            reason="the track is clear",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            stops=(StopId("arm-0f0f-3"),),
+        ),
     ),
     "acknowledge_request": (
         AcknowledgeRequest(
@@ -411,5 +417,6 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             stop_because="the store was broken",
         ),
         Restored(kept=(), boot=1, next_event=1, next_change=1, next_task=1, stop_because=""),
+        Restored(boot=2, next_event=31, run="9f86d081884c7d65"),
     ),
 }

@@ -31,6 +31,7 @@ from domain.kept import (
     KeptError,
     KeptFailedChange,
     KeptHold,
+    KeptPeerStops,
     KeptProgress,
     KeptReaction,
     KeptReport,
@@ -227,6 +228,26 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
     "kept_emergency_stop": (
         KeptEmergencyStop(
             engaged=True, by="ada", reason='Größe ≤ 3 — "gripper\\jam"', since=1764420000123456789
+        ),
+        KeptEmergencyStop(
+            engaged=True,
+            by="ada",
+            reason="a child",
+            since=1764420000123456789,
+            id="9f86d081884c7d65-31",
+        ),
+    ),
+    "kept_peer_stops": (
+        KeptPeerStops(
+            computer=ComputerName("arm"),
+            stops=(
+                PeerStop(
+                    id=StopId("0f0f-3"),
+                    by="ada",
+                    reason='Größe ≤ 3 — "gripper\\jam"',
+                    since=1764420000123456789,
+                ),
+            ),
         ),
     ),
     "kept_error": (

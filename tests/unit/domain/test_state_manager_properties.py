@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from domain.errors import OutdatedReadingError
 from domain.findings import Blocker
+from domain.health.signal_monitor import StopCause
 from domain.health.signals import (
     STALE_DATA,
     Bound,
@@ -151,7 +152,8 @@ class Told:
 def do(health: StateManager, act: Act, now: int) -> HealthChanges | None:
     """Do one thing; return None if it is refused."""
     if isinstance(act, Engage):
-        return health.set_emergency_stop(now if act.engaged else None, now)
+        causes = (StopCause("emergency stop is engaged", now),) if act.engaged else ()
+        return health.set_emergency_stop(causes, now)
     if isinstance(act, Acknowledge):
         return health.acknowledge(ErrorKey(None, act.error), now)
     try:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from domain.computers import SUPERVISOR, ComputerName, StopId
 from domain.events.event import Event
 from domain.events.health import (
     EmergencyStopEngaged,
@@ -13,18 +14,22 @@ from domain.events.health import (
     ErrorCleared,
     ErrorRaised,
     ErrorReported,
+    PeerStopEngaged,
+    PeerStopReleased,
     PropagationNotSeen,
     SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
+    StopReleaseAsked,
     SystemStateChanged,
 )
 from domain.snapshot import SystemState
 from domain.state_and_mode import PartName
 
 ARM = PartName("arm")
+DEVICE, STOP = ComputerName("arm"), StopId("0f0f-3")
 IDLE, ERROR = SystemState.IDLE, SystemState.ERROR
 
 
@@ -71,6 +76,17 @@ IDLE, ERROR = SystemState.IDLE, SystemState.ERROR
         (ErrorAcknowledged("ESTOP"), "ESTOP acknowledged"),
         (EmergencyStopEngaged("a child"), "emergency stop engaged: a child"),
         (EmergencyStopReleased("track clear"), "emergency stop released"),
+        (
+            EmergencyStopReleased("track clear", (DEVICE, SUPERVISOR)),
+            "emergency stop released here; one is still engaged at device arm, the supervisor",
+        ),
+        (
+            PeerStopEngaged(DEVICE, STOP, "ada", "a child"),
+            "emergency stop engaged at device arm by ada: a child",
+        ),
+        (PeerStopEngaged(SUPERVISOR, STOP, "", ""), "emergency stop engaged at the supervisor"),
+        (PeerStopReleased(DEVICE, STOP), "emergency stop at device arm released"),
+        (StopReleaseAsked(DEVICE, (STOP,)), "device arm asked to release its emergency stop"),
         (EmergencyStopStandstill(), "the vehicle is at standstill after the emergency stop"),
     ],
     ids=lambda value: value.kind if isinstance(value, Event) else "",

@@ -1,54 +1,8 @@
 import pytest
 
-from domain.actor import Actor
-from domain.events.event import RecordedEvent
-from domain.health.emergency_stop import EmergencyStop
-from domain.health.health import Health
-from domain.health.signals import default_signals
-from domain.inputs import EmergencyStopRequest, Restored
-from domain.kept import Kept, KeptEmergencyStop
-from domain.outbox import Outbox
-from domain.restart import Restart
+from domain.kept import KeptEmergencyStop
 from domain.snapshot import EmergencyStopView
-from domain.timebase import Instant
-
-RELEASED = EmergencyStopView(engaged=False, by=None, reason=None, since=None, standstill_at=None)
-
-
-class Robot:
-    """A robot of which nothing but its emergency stop is of interest."""
-
-    def __init__(self, now: Instant = 0) -> None:
-        self.now = now
-        self.kept: list[Kept | None] = []
-        """What was kept in the last step."""
-        self.outbox = Outbox()
-        self.health = Health(default_signals(), self.outbox, now)
-        self.stop = EmergencyStop(self.health, self.outbox)
-
-    def engage(self, by: str, reason: str, now: int) -> list[str]:
-        self.stop.take_request(EmergencyStopRequest(True, reason, Actor(by)), now)
-        return self._told()
-
-    def release(self, by: str, reason: str, now: int) -> list[str]:
-        self.stop.take_request(EmergencyStopRequest(False, reason, Actor(by)), now)
-        return self._told()
-
-    def stand(self, now: int) -> list[str]:
-        self.stop.note_standstill(now)
-        return self._told()
-
-    def restore(self, *kept: KeptEmergencyStop, stop_because: str = "") -> list[str]:
-        restored = Restored(kept, stop_because=stop_because)
-        Restart(self.outbox).take_restored(restored, self.now)
-        self.stop.restore(restored, self.now)
-        return self._told()
-
-    def _told(self) -> list[str]:
-        outputs = self.outbox.take()
-        self.kept = [item.value for item in outputs.kept]
-        events: tuple[RecordedEvent, ...] = outputs.events
-        return [event.kind for event in events]
+from tests.support.stopped_robot import RELEASED, Robot, engaged
 
 
 def test_it_starts_released_by_nobody() -> None:
@@ -59,9 +13,7 @@ def test_it_shows_who_engaged_it_why_and_when() -> None:
     robot = Robot()
 
     assert robot.engage("anna", "child on the track", 7)[0] == "emergency_stop.engaged"
-    assert robot.stop.view() == EmergencyStopView(
-        engaged=True, by="anna", reason="child on the track", since=7, standstill_at=None
-    )
+    assert robot.stop.view() == engaged("anna", "child on the track", 7, stop="stop-1")
 
 
 def test_it_raises_estop_until_it_is_released() -> None:
@@ -109,8 +61,8 @@ def test_the_first_standstill_after_the_stop_is_kept() -> None:
 
     assert robot.stand(9) == ["emergency_stop.standstill"]
     assert robot.stand(12) == []
-    assert robot.stop.view() == EmergencyStopView(
-        engaged=True, by="anna", reason="child on the track", since=7, standstill_at=9
+    assert robot.stop.view() == engaged(
+        "anna", "child on the track", 7, stop="stop-1", standstill_at=9
     )
 
 
@@ -150,7 +102,7 @@ def test_another_stop_waits_for_a_standstill_of_its_own() -> None:
 def test_whoever_engages_or_releases_it_is_kept() -> None:
     robot = Robot()
     robot.engage("anna", "child on the track", 7)
-    assert robot.kept == [KeptEmergencyStop(True, "anna", "child on the track", 7)]
+    assert robot.kept == [KeptEmergencyStop(True, "anna", "child on the track", 7, "stop-1")]
     robot.engage("bert", "me too", 9)
     assert robot.kept == []
 
@@ -160,12 +112,10 @@ def test_whoever_engages_or_releases_it_is_kept() -> None:
 
 def test_after_a_restart_it_is_engaged_as_it_was() -> None:
     robot = Robot(now=100)
-    told = robot.restore(KeptEmergencyStop(True, "anna", "child on the track", 7))
+    told = robot.restore(KeptEmergencyStop(True, "anna", "child on the track", 7, "stop-3"))
 
     assert told[:2] == ["service.restored", "error.raised"]
-    assert robot.stop.view() == EmergencyStopView(
-        engaged=True, by="anna", reason="child on the track", since=7, standstill_at=None
-    )
+    assert robot.stop.view() == engaged("anna", "child on the track", 7, stop="stop-3")
     (reason,) = robot.health.stop_reasons
     assert (reason.code, reason.since) == ("ESTOP", 7)
     assert robot.kept == [], "it is kept already"
@@ -214,10 +164,10 @@ def test_what_cannot_be_read_engages_it_whatever_was_kept(
     told = robot.restore(*kept, stop_because="state.db is broken")
 
     assert told[:3] == ["service.restored", "emergency_stop.engaged", "error.raised"]
-    assert robot.stop.view() == EmergencyStopView(
-        engaged=True, by="service", reason="state.db is broken", since=100, standstill_at=None
-    )
-    assert robot.kept == [KeptEmergencyStop(True, "service", "state.db is broken", 100)]
+    (kept_now,) = robot.kept
+    assert isinstance(kept_now, KeptEmergencyStop)
+    assert kept_now == KeptEmergencyStop(True, "service", "state.db is broken", 100, kept_now.id)
+    assert robot.stop.view() == engaged("service", "state.db is broken", 100, stop=kept_now.id)
 
 
 def test_the_first_run_of_a_robot_leaves_it_as_it_is() -> None:
@@ -225,3 +175,11 @@ def test_the_first_run_of_a_robot_leaves_it_as_it_is() -> None:
 
     assert robot.restore() == []
     assert robot.stop.view() == RELEASED
+
+
+def test_a_stop_of_a_release_without_ids_gets_one_that_is_kept() -> None:
+    robot = Robot(now=100)
+    robot.restore(KeptEmergencyStop(True, "anna", "child on the track", 7))
+
+    assert robot.kept == [KeptEmergencyStop(True, "anna", "child on the track", 7, "stop-1")]
+    assert robot.stop.view() == engaged("anna", "child on the track", 7, stop="stop-1")

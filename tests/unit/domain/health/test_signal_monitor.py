@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from domain.findings import Blocker
-from domain.health.signal_monitor import SignalMonitor
+from domain.health.signal_monitor import SignalMonitor, StopCause
 from domain.health.signals import (
     STALE_DATA,
     Bound,
@@ -15,10 +15,14 @@ from domain.health.signals import (
     default_signals,
 )
 from domain.inputs import Reading, SignalValue, SourceFault
-from domain.timebase import seconds
+from domain.timebase import Instant, seconds
 
 START = seconds(500)
 DEFAULTS = {item.spec.name: item for item in default_signals()}
+
+
+def engaged(since: Instant) -> tuple[StopCause, ...]:
+    return (StopCause("emergency stop is engaged", since),)
 
 
 class Story:
@@ -255,27 +259,29 @@ def test_an_engaged_stop_is_not_delayed_by_what_delays_its_readings() -> None:
     stop.read(0.5, True)
     assert stop.monitor.view.error is None
 
-    stop.monitor.set_engaged(START + seconds(0.6), START + seconds(0.6))
+    stop.monitor.set_engaged(engaged(START + seconds(0.6)), START + seconds(0.6))
     assert stop.monitor.view.error == "ESTOP"
 
 
 def test_readings_go_on_being_judged_while_the_stop_is_engaged() -> None:
     pressed = Bound("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
     stop = Story(replace(DEFAULTS["estop"], bounds=(pressed,)))
-    stop.monitor.set_engaged(START, START)
+    stop.monitor.set_engaged(engaged(START), START)
     stop.read(9, False)
-    stop.monitor.set_engaged(None, START + seconds(9.1))
+    stop.monitor.set_engaged((), START + seconds(9.1))
     stop.read(9.5, True)
 
     assert stop.wakes_at_s == 10.5
 
 
-def test_engaging_twice_keeps_when_it_was_engaged_first() -> None:
+def test_all_that_engage_a_stop_are_told() -> None:
     stop = Story(DEFAULTS["estop"])
-    for at_s in (1, 2):
-        stop.monitor.set_engaged(START + seconds(at_s), START + seconds(at_s))
+    for causes in (engaged(START), (*engaged(START), StopCause("engaged at device arm", START))):
+        stop.monitor.set_engaged(causes, START + seconds(1))
 
-    assert [reason.since for reason in stop.monitor.reasons()] == [START + seconds(1)]
+        assert [reason.message for reason in stop.monitor.reasons()] == [
+            cause.message for cause in causes
+        ]
 
 
 def test_a_reading_is_stale_when_it_is_strictly_older_than_the_limit() -> None:
@@ -417,7 +423,7 @@ def test_an_error_kept_after_its_cause_is_told_as_that_until_it_is_acknowledged(
 
 def test_a_stop_is_told_once_for_the_latch_and_once_for_who_presses_it() -> None:
     stop = Story(DEFAULTS["estop"])
-    stop.monitor.set_engaged(START + seconds(1), START + seconds(1))
+    stop.monitor.set_engaged(engaged(START + seconds(1)), START + seconds(1))
     stop.read(2, True)
     latch, pressed = stop.monitor.reasons()
 
