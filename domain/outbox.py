@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from domain.actor import NOBODY, Actor
 from domain.commands import Command
+from domain.computers import ComputerName
 from domain.events.event import Event, RecordedEvent
 from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, TaskId
@@ -38,6 +39,8 @@ class Outputs(NamedTuple):
     """Whether the motion of the vehicle, its command or its look-ahead point changed."""
     kept: tuple[Keeping, ...] = ()
     """What changed of that which survives a restart; one entry per thing."""
+    devices: frozenset[ComputerName] = frozenset()
+    """Devices whose view changed."""
 
 
 NOTHING = Outputs()
@@ -56,6 +59,7 @@ class Outbox:
         self.signals: set[str] = set()
         self.errors: set[ErrorKey] = set()
         self.reactions: set[str] = set()
+        self.devices: set[ComputerName] = set()
         self.system_state = False
         self.task: TaskId | None = None
         self.task_changed = False
@@ -168,12 +172,13 @@ class Outbox:
             self.task_changed,
             self.vehicle_changed,
             tuple(self._kept.values()),
+            frozenset(self.devices),
         )
         self._kept = {}
         self._commands, self._events = [], []
         self.change, self.system_state = None, False
         self.parts, self.signals = set(), set()
-        self.errors, self.reactions = set(), set()
+        self.errors, self.reactions, self.devices = set(), set(), set()
         self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
 
@@ -188,6 +193,7 @@ class Outbox:
             or self.signals
             or self.errors
             or self.reactions
+            or self.devices
             or self.system_state
             or self.change
             or self.task

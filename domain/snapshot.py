@@ -8,7 +8,11 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal, NamedTuple
 
+<<<<<<< HEAD
 from domain.computers import ComputerName, StopView
+=======
+from domain.computers import ComputerName
+>>>>>>> lk-supervisor
 from domain.findings import Blocker, Fact
 from domain.identifiers import ChangeId, TaskId
 from domain.inputs import ChangeRequest, SignalValue
@@ -101,6 +105,8 @@ class PartView:
     """For a system: whether all its nodes are reachable."""
     change: ChangeId | None
     """The change that drives this part; it may already be superseded elsewhere."""
+    device: ComputerName | None = None
+    """The computer that owns this node; None: this one."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +19,9 @@ from domain.commands import TellStops
 from domain.computers import ComputerName
 from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
+from domain.devices.device_view import DeviceView
+from domain.devices.devices import Devices
+from domain.devices.settings import DeviceSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
@@ -68,7 +71,7 @@ from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import VehicleLimits
 
 _SPARE_ROUNDS = 100
@@ -88,6 +91,20 @@ class SupervisionSettings:
     """What is supervised of the checkpoints of nodes."""
     peers: tuple[ComputerName, ...] = ()
     """The other computers of the robot, which stop it as well; empty: it has one computer."""
+    devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
+    """Computers that own nodes; empty: all nodes are those of this one."""
+    devices_heard_within: Duration = seconds(1.5)
+    """How long rules, fallbacks and reactions wait for devices after a start."""
+
+    @property
+    def device_of(self) -> Mapping[PartName, ComputerName]:
+        """Return by node that another computer owns, that computer."""
+        return {node: name for name, each in self.devices.items() for node in each.nodes}
+
+    @property
+    def nodes_of_devices(self) -> Mapping[PartName, Sequence[PartName]]:
+        """Return by device, whose errors are named as those of parts are, the nodes it owns."""
+        return {PartName(name): each.nodes for name, each in self.devices.items()}
 
 
 class Supervision:
@@ -104,13 +121,22 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        parts = self._parts = Parts(model, outbox)
-        causes = ErrorCauses(model, settings.checkpoints)
+        parts = self._parts = Parts(model, outbox, settings.device_of)
+        causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
         health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
+        # What is lost with a device follows from that from the start.
+        devices = self._devices = Devices(
+            settings.devices,
+            settings.devices_heard_within,
+            parts,
+            health.error_list,
+            outbox,
+            start,
+        )
         errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
@@ -127,6 +153,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
+            devices,
             ModeLimits(settings.signals, parts, health, outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
@@ -149,7 +176,14 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
-        propagation = Propagation(health.error_list, self.conditions, errors.unheard, outbox, start)
+        propagation = Propagation(
+            health.error_list,
+            self.conditions,
+            errors.unheard,
+            outbox,
+            start,
+            self._devices.unheard,
+        )
         return (
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
@@ -367,13 +401,21 @@ class Supervision:
         return self._health.error_list.view(key)
 
     def errors(self) -> Iterator[ErrorView]:
-        """Yield all errors: the robot's own, then those of the parts in the order of the file."""
+        """Yield all errors: the robot's own, those of devices, then those of the parts.
+
+        Both are in the order of their file.
+        """
         yield from self._health.error_views()
+        for device in self._health.error_list.causes.devices:
+            yield from self.errors_of(device)
         for part in self.model.parts:
             yield from self.errors_of(part)
 
     def errors_of(self, part: PartName) -> Iterator[ErrorView]:
-        """Yield the errors of one part, those that signals raise last; the model must have it."""
+        """Yield the errors of one part, those that signals raise last; or those of a device.
+
+        There must be such a part or device.
+        """
         yield from self._part_errors.views_of(part)
         yield from self._health.error_views(part)
 
@@ -414,6 +456,10 @@ class Supervision:
         """Tell whether a request may start or loosen something as things are now."""
         stopped, holds = self.emergency_stop().engaged, self.driving.holds
         return may_loosen(given, is_stopped=stopped, holds=holds)
+
+    def devices(self) -> Mapping[ComputerName, DeviceView]:
+        """Return the devices of the robot by name; empty: it has but one computer."""
+        return self._devices.views()
 
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""

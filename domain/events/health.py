@@ -1,7 +1,7 @@
 """Events of signals, errors, the emergency stop and the state of the robot."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from domain.computers import ComputerName, StopId, computer_words
 from domain.events.event import Event, because
@@ -116,6 +116,7 @@ class ErrorRaised(Event):
     """An error of the robot or of a part is raised."""
 
     kind = "error.raised"
+    hidden = frozenset({"of_device"})
 
     error: str
     message: str
@@ -127,6 +128,8 @@ class ErrorRaised(Event):
     """No other error explains it."""
     silenced: bool = False
     """It is shelved, or the model suppresses it."""
+    of_device: bool = field(default=False, kw_only=True)
+    """The part is a device, of which another event tells."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name}: {self.message}"
@@ -137,7 +140,8 @@ class ErrorRaised(Event):
 
         An error that is silenced still sets its bit, which other events tell.
         """
-        return not self.silenced and _is_told_by_itself(self.part, self.error, self.root_cause)
+        is_told = self.of_device or self.silenced
+        return not is_told and _is_told_by_itself(self.part, self.error, self.root_cause)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +149,7 @@ class ErrorCleared(Event):
     """An error of the robot or of a part is cleared."""
 
     kind = "error.cleared"
+    hidden = frozenset({"of_device"})
 
     error: str
     part: PartName | None = None
@@ -153,6 +158,8 @@ class ErrorCleared(Event):
     """No other error explained it."""
     silenced: bool = False
     """As in `error.raised`."""
+    of_device: bool = field(default=False, kw_only=True)
+    """As in `error.raised`."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name} cleared"
@@ -160,7 +167,8 @@ class ErrorCleared(Event):
     @property
     def notable(self) -> bool:
         """As of `error.raised`."""
-        return not self.silenced and _is_told_by_itself(self.part, self.error, self.root_cause)
+        is_told = self.of_device or self.silenced
+        return not is_told and _is_told_by_itself(self.part, self.error, self.root_cause)
 
 
 def _is_told_by_itself(part: PartName | None, error: str, root_cause: bool) -> bool:

@@ -3,7 +3,17 @@
 from collections.abc import Iterator, Mapping
 from types import ModuleType
 
-from domain.events import announcing, changes, driving, health, parts, reactions, service, targets
+from domain.events import (
+    announcing,
+    changes,
+    devices,
+    driving,
+    health,
+    parts,
+    reactions,
+    service,
+    targets,
+)
 from domain.events.event import Event
 
 
@@ -14,7 +24,7 @@ def _kinds(*modules: ModuleType) -> Iterator[type[Event]]:
                 yield item
 
 
-_MODULES = (announcing, parts, changes, health, driving, reactions, service, targets)
+_MODULES = (announcing, parts, changes, devices, health, driving, reactions, service, targets)
 
 EVENTS: Mapping[str, type[Event]] = {
     kind.kind: kind for kind in sorted(_kinds(*_MODULES), key=lambda item: item.kind)

@@ -27,6 +27,7 @@ from domain.kept import KeptShelf, KeptUnacknowledged
 from domain.outbox import Outbox
 from domain.parts.system_model import SmhModel
 from domain.snapshot import ErrorKey, ErrorMarks, ShelfView
+from domain.state_and_mode import PartName
 from domain.timebase import Instant, to_seconds
 
 
@@ -165,7 +166,7 @@ class Announcing(Concern):
     def _checked(self, request: AcknowledgeRequest | ShelveRequest | UnshelveRequest) -> ErrorKey:
         """Return which error a request means."""
         part = request.part
-        if part is not None and part not in self._model:
+        if part is not None and not self._is_there(part):
             raise UnknownPartError("part", part, self._model.parts)
         names = self._names(ErrorKey(part, request.error))
         if request.error not in names:
@@ -177,9 +178,13 @@ class Announcing(Concern):
         of_signals = (view.key.error for view in self._health.error_views(key.part))
         if key.part is None:
             return tuple(of_signals)
-        if key.part not in self._model:
+        if not self._is_there(key.part):
             return ()
         return (*self._part_errors.names_of(key.part), *of_signals)
+
+    def _is_there(self, part: PartName) -> bool:
+        """Tell whether there is a part, or a device, of a name."""
+        return part in self._model or part in self._errors.causes.devices
 
     def _is_known(self, key: ErrorKey, kind: type, what: str) -> bool:
         """Tell whether an error of an earlier run still exists; one that does not is forgotten."""

@@ -15,6 +15,9 @@ CHECKPOINT_TOO_FEW = "CHECKPOINT_TOO_FEW"
 CHECKPOINT_TOO_MANY = "CHECKPOINT_TOO_MANY"
 CHECKPOINT_LATE = "CHECKPOINT_LATE"
 CHECKPOINT_WRONG_ORDER = "CHECKPOINT_WRONG_ORDER"
+LATE = "LATE"
+LOST = "LOST"
+DEVICE_CONFLICT = "DEVICE_CONFLICT"
 
 OF_EVERY_PART: Mapping[str, Severity] = MappingProxyType(
     {
@@ -47,6 +50,11 @@ OF_CHECKPOINTS: Mapping[str, Severity] = MappingProxyType(
 
 ALL_OF_NODES: Mapping[str, Severity] = MappingProxyType({**OF_NODES, **OF_CHECKPOINTS})
 """The errors that any node may have without a word in the model file."""
+
+OF_DEVICES: Mapping[str, Severity] = MappingProxyType(
+    {LATE: Severity.WARNING, LOST: Severity.URGENT, DEVICE_CONFLICT: Severity.URGENT}
+)
+"""The errors of the devices of a robot, which are no parts, but share their names with none."""
 
 
 def severity_of(key: ErrorKey) -> Severity:

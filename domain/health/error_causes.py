@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, islice, pairwise
+from types import MappingProxyType
 from typing import TypeAlias
 
 from domain.circles import circles
@@ -10,14 +11,17 @@ from domain.conditions.tree import Comparison, Operator, TopicKind, comparisons
 from domain.health.built_in_errors import (
     ALL_OF_NODES,
     DEVIATES,
+    LOST,
+    OF_DEVICES,
     OF_EVERY_PART,
     OF_NODES,
     UNREACHABLE,
+    severity_of,
 )
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.errors_check import named_errors
 from domain.parts.system_model import SmhModel
-from domain.snapshot import ErrorKey
+from domain.snapshot import ErrorKey, Severity
 from domain.state_and_mode import PartName
 
 MAX_SHOWN = 20
@@ -36,18 +40,28 @@ class ErrorCauses:
     """The graph of errors of one robot; it has no circle.
 
     Beside what is declared: what rests on whether nodes are reachable is explained by UNREACHABLE
-    of these nodes, and that a system deviates by the parts that do. Such a link is left out where
-    it would close a circle, since what is declared prevails.
+    of these nodes, and that a system deviates by the parts that do; that a node is UNREACHABLE, by
+    its device if that is LOST. Such a link is left out where it would close a circle, since what is
+    declared prevails.
     """
 
-    def __init__(self, model: SmhModel, with_checkpoints: Container[PartName] = ()) -> None:
+    def __init__(
+        self,
+        model: SmhModel,
+        with_checkpoints: Container[PartName] = (),
+        devices: Mapping[PartName, Sequence[PartName]] = MappingProxyType({}),
+    ) -> None:
         """Gather what explains what.
 
         Args:
             model: Systems and nodes, with the errors that the file declares.
             with_checkpoints: Nodes whose checkpoints are supervised.
+            devices: By device, the nodes that it owns; no device has the name of a part.
         """
         self._model = model
+        self.devices = devices
+        """By device, its nodes; read only."""
+        self._device_of = {node: name for name, nodes in devices.items() for node in nodes}
         self._with_checkpoints = with_checkpoints
         self.declared: Mapping[ErrorKey, DeclaredError] = {
             ErrorKey(part, name): own
@@ -77,12 +91,28 @@ class ErrorCauses:
     # --- what can be seen ------------------------------------------------------------------------
 
     def names_of(self, part: PartName) -> Iterable[str]:
-        """Return the errors that a part can have: the built-in ones, then those of the file."""
+        """Return the errors that a part can have: the built-in ones, then those of the file.
+
+        A device can have those of devices.
+        """
+        if part in self.devices:
+            return OF_DEVICES
         built_in = OF_NODES if part in self._model.nodes else OF_EVERY_PART
         if part in self._with_checkpoints:
             built_in = ALL_OF_NODES
         own = self._model.errors.get(part)
         return (*built_in, *(name for name in own if name not in built_in)) if own else built_in
+
+    def is_of_device(self, key: ErrorKey) -> bool:
+        """Tell whether an error is that of a device."""
+        return key.part in self.devices
+
+    def severity_of(self, key: ErrorKey) -> Severity:
+        """Return the severity of an error that no signal raises."""
+        if self.is_of_device(key):
+            return OF_DEVICES.get(key.error, Severity.WARNING)
+        own = self.declared.get(key)
+        return severity_of(key) if own is None or own.severity is None else own.severity
 
     def place(self, key: ErrorKey) -> Place:
         """Return where an error is decided: after all that it depends on; ties as in the file."""
@@ -103,7 +133,12 @@ class ErrorCauses:
         """
         yield from self._effects.get(key, ())
         part, error = key
-        if part is None or error not in (UNREACHABLE, DEVIATES):
+        if part is None:
+            return
+        if error == LOST:
+            unreachable = (ErrorKey(node, UNREACHABLE) for node in self.devices.get(part, ()))
+            yield from (each for each in unreachable if is_on(each) and each not in self._causes)
+        if error not in (UNREACHABLE, DEVIATES):
             return
         deviating = [ErrorKey(part, DEVIATES)] if error == UNREACHABLE else []
         systems = (ErrorKey(system, DEVIATES) for system in self._model.ancestors.get(part, ()))
@@ -128,6 +163,8 @@ class ErrorCauses:
         found: Iterator[ErrorKey]
         if key in self._causes:
             found = (cause for cause in self._causes[key] if is_on(cause))
+        elif key.error == UNREACHABLE:
+            found = filter(is_on, self._of_unreachable(key.part))
         elif key.part is None or key.error != DEVIATES:
             return ()
         elif key.part in self._model.systems:
@@ -170,9 +207,16 @@ class ErrorCauses:
         implied = self._implied[key]
         if key.error == DEVIATES and key.part is not None:
             implied = tuple(self._of_deviation(key.part))
+        elif key.error == UNREACHABLE:
+            implied = self._of_unreachable(key.part)
         for cause in implied:
             if cause not in own.caused_by and (key, cause) not in self._left_out:
                 yield cause
+
+    def _of_unreachable(self, node: PartName | None) -> tuple[ErrorKey, ...]:
+        """Return what can explain that a node is unreachable, apart from what is declared."""
+        device = self._device_of.get(node) if node is not None else None
+        return () if device is None else (ErrorKey(device, LOST),)
 
     def _of_deviation(self, part: PartName) -> Iterator[ErrorKey]:
         """Yield what can explain that a part deviates, apart from what is declared."""

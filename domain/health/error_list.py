@@ -9,7 +9,6 @@ from domain.events.health import ErrorCleared, ErrorRaised
 from domain.findings import Fact
 from domain.health.alarm import QUIET, Alarm, Evidence
 from domain.health.alarms import Alarms
-from domain.health.built_in_errors import severity_of
 from domain.health.error_causes import MAX_SHOWN, NO_CAUSES, ErrorCauses
 from domain.health.on_errors import OnErrors
 from domain.health.severe_errors import SevereErrors
@@ -138,6 +137,7 @@ class ErrorList:
             key.part,
             view.is_root,
             view.marks.is_silenced,
+            of_device=self.causes.is_of_device(key),
         )
         self.note_told(key, self._outbox.emit(raised, cause))
 
@@ -161,7 +161,13 @@ class ErrorList:
             cause: Id of the event that led to it; None: the current input.
         """
         key = before.key
-        cleared = ErrorCleared(key.error, key.part, before.is_root, before.marks.is_silenced)
+        cleared = ErrorCleared(
+            key.error,
+            key.part,
+            before.is_root,
+            before.marks.is_silenced,
+            of_device=self.causes.is_of_device(key),
+        )
         self.note_told(key, self._outbox.emit(cleared, cause))
 
     def note_told(self, key: ErrorKey, event: int) -> None:
@@ -330,10 +336,7 @@ class ErrorList:
     def _severity_of(self, key: ErrorKey) -> Severity:
         if (severity := self._severities.get(key)) is not None:
             return severity
-        declared = self.causes.declared.get(key)
-        if declared is not None and declared.severity is not None:
-            return declared.severity
-        return severity_of(key)
+        return self.causes.severity_of(key)
 
     def _hint_of(self, key: ErrorKey) -> str:
         declared = self.causes.declared.get(key)

@@ -15,7 +15,7 @@ from domain.conditions.tree import Topic, TopicKind, comparisons
 from domain.conditions.watched import WatchedConditions
 from domain.deadlines import Deadlines
 from domain.events.health import PropagationNotSeen
-from domain.health.built_in_errors import UNREACHABLE
+from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.error_causes import Place
 from domain.health.error_list import NORMAL, ErrorList, Found
 from domain.outbox import Outbox
@@ -38,6 +38,7 @@ class Propagation(Concern):
         unheard: Container[PartName],
         outbox: Outbox,
         start: Instant,
+        unheard_devices: Container[str] = (),
     ) -> None:
         """Follow conditions and errors.
 
@@ -48,11 +49,13 @@ class Propagation(Concern):
                 on without a word, as they are unreachable without a word.
             outbox: Receives events.
             start: The current time.
+            unheard_devices: Devices that were not connected since the start, as `unheard`.
         """
         self._errors = errors
         self._causes = errors.causes
         self._watched = watched
-        self._unheard = unheard
+        self._unheard: dict[str, Container[str]] = {UNREACHABLE: unheard, LOST: unheard_devices}
+        """By error, who has it since the start."""
         self._outbox = outbox
         self._users: dict[str, list[ErrorKey]] = {}
         """By text of a condition, the errors that it decides about."""
@@ -292,12 +295,12 @@ class Propagation(Concern):
         return True
 
     def _is_unheard(self, key: ErrorKey) -> bool:
-        """Tell whether an error goes back to nothing but nodes that were never heard of."""
+        """Tell whether an error goes back to nothing but who was never heard of."""
         return self._are_unheard(self._errors.view(key).roots or (key,))
 
     def _are_unheard(self, roots: Collection[ErrorKey]) -> bool:
         for part, error in roots:
-            if error != UNREACHABLE or part is None or part not in self._unheard:
+            if part is None or part not in self._unheard.get(error, ()):
                 return False
         return bool(roots)
 

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping
 from heapq import heapify, heappop, heappush
 
 from domain.errors import UnknownPartError
+from domain.findings import Blocker
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.parameters import same_value
@@ -91,6 +92,21 @@ class ModeInference:
             self._tell_parents(node)
             changed = self._infer((node, *self._parents.get(node, ())))
         return changed | self._convergence.renew({*changed, node})
+
+    def note_cut_off(self, nodes: Iterable[PartName], why: Blocker | None) -> set[PartName]:
+        """Note why nothing is heard of nodes; return the parts of which that changed what is told.
+
+        Args:
+            nodes: Of one device.
+            why: Why it is not connected; None: it is.
+        """
+        facts = self._facts
+        changed = [node for node in nodes if facts[node].cut_off != why]
+        for node in changed:
+            facts[node].cut_off = why
+        unknown = [n for n in changed if facts[n].known_state is LifecycleState.UNKNOWN]
+        renewed = self._infer(unknown)
+        return renewed | self._convergence.renew(renewed)
 
     def set_targets(self, targets: Mapping[PartName, StateAndMode | None]) -> set[PartName]:
         """Set the targets in force; return the parts of which that changed anything.

@@ -1,6 +1,7 @@
 """What keeps a node from being where it is needed, as one reason."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from domain.findings import Blocker
 from domain.lifecycle import LifecycleState
@@ -10,6 +11,8 @@ from domain.state_and_mode import PartName
 UNREACHABLE = "UNREACHABLE"
 UNKNOWN_STATE = "UNKNOWN_STATE"
 ERROR_PROCESSING = "ERROR_PROCESSING"
+DEVICE_LOST = "DEVICE_LOST"
+"""Code of what a node that cannot be heard follows from."""
 _STUCK = {
     LifecycleState.FINALIZED: ("FINALIZED", "is finalized: its process must be restarted"),
     LifecycleState.ERROR_PROCESSING: (ERROR_PROCESSING, "is processing an error"),
@@ -28,12 +31,23 @@ def doubt_of(node: PartName, facts: NodeFacts, path: Sequence[str]) -> Blocker |
         path: Parts from the one that is asked about down to the node.
     """
     state = facts.known_state
+    causes: tuple[Blocker, ...] = ()
     if state is LifecycleState.UNKNOWN:
         code = UNREACHABLE if facts.reachable is False else UNKNOWN_STATE
         words, value = facts.why_unknown, None
+        if facts.cut_off is not None:
+            causes = (replace(facts.cut_off, path=tuple(path)),)
     elif state in _STUCK:
         code, words = _STUCK[state]
         value = str(state)
     else:
         return None
-    return Blocker(code, f"{node} {words}", tuple(path), value, since=facts.state_since)
+    return Blocker(
+        code,
+        f"{node} {words}",
+        tuple(path),
+        value,
+        since=facts.state_since,
+        root_cause=not causes,
+        causes=causes,
+    )

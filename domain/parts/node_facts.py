@@ -5,6 +5,7 @@ No fact is derived from another one: parameters that match a mode do not make a 
 
 from dataclasses import dataclass, field
 
+from domain.findings import Blocker
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.parameters import ParameterValue, same_value
@@ -23,6 +24,8 @@ class NodeFacts:
     has_lifecycle: bool = True
     state_since: Instant | None = None
     """Since when the node is in its known state; None: unknown."""
+    cut_off: Blocker | None = None
+    """Why nothing can be heard of it, whatever it does: its device is not connected."""
 
     def take(self, report: NodeReport, now: Instant | None = None) -> bool:
         """Update the facts from a report; return whether any of them changed.
@@ -71,6 +74,6 @@ class NodeFacts:
     @property
     def why_unknown(self) -> str:
         """Return why the state is unknown, as a phrase that follows the node's name."""
-        if self.reachable is False:
-            return "is unreachable"
-        return "has never reported a state"
+        is_lost = self.reachable is False
+        words = "is unreachable" if is_lost else "has never reported a state"
+        return words if self.cut_off is None else f"{words}: {self.cut_off.message}"

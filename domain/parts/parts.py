@@ -3,8 +3,10 @@
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import islice
+from types import MappingProxyType
 
 from domain.actor import Actor
+from domain.computers import ComputerName
 from domain.concern import Concern, Takers
 from domain.events.parts import (
     DeviationBegan,
@@ -52,8 +54,24 @@ class _Cause:
 class Parts(Concern):
     """All parts: facts, inference, targets, deviations and their events."""
 
-    def __init__(self, model: SmhModel, outbox: Outbox) -> None:
+    def __init__(
+        self,
+        model: SmhModel,
+        outbox: Outbox,
+        devices: Mapping[PartName, ComputerName] = MappingProxyType({}),
+    ) -> None:
+        """Begin with all nodes unknown.
+
+        Args:
+            model: Systems and nodes.
+            outbox: Receives events.
+            devices: By node that another computer owns, that computer.
+        """
         self.model = model
+        self._devices = devices
+        self.awaits_devices = False
+        """Whether nodes may yet be heard of as each start begins: nothing is concluded from what is
+        not known until then. Read only for others."""
         self.inference = ModeInference(model)
         """Read only for others."""
         self._targets = Targets(self.inference)
@@ -126,6 +144,14 @@ class Parts(Concern):
         self._touched |= changed
         self._moved |= changed
         self._tell_actuals(changed)
+
+    def note_cut_off(self, nodes: Iterable[PartName], why: Blocker | None) -> None:
+        """Note why nothing is heard of the nodes of a device; None: it is connected."""
+        self.touch(self.inference.note_cut_off(nodes, why))
+
+    def await_devices(self, *, wait: bool) -> None:
+        """Let nothing be concluded from what is not known, or again."""
+        self.awaits_devices = wait
 
     def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
         """Set requested targets, in force at once; None: the part has none any more."""
@@ -368,6 +394,7 @@ class Parts(Concern):
             deviation_reason=None if since is None else self.inference.deviation_reason(part),
             reachable=self._reachability.reaches(part),
             change=self.change_of(part),
+            device=self._devices.get(part),
         )
 
 

@@ -118,6 +118,10 @@ class Fallbacks(Concern):
         """Put fallbacks in force, or let one part return; return whether anything changed."""
         if not self._rank:
             return False
+        if self._parts.awaits_devices:
+            # Once all computers were heard, or could have been, all is judged anew.
+            self._revision = None
+            return False
         parts = self._to_review()
         has_moved = self._follow_requests(parts)
         broken = []

@@ -96,6 +96,7 @@ class Reactions(Concern):
         self._views = ReactionViews(reactions, self._budgets, self._triggers, outbox)
         self._revision: int | None = None
         """That of the conditions when they were judged last; None: all have to be."""
+        self._was_waiting = parts.awaits_devices
         self._was_stopped = False
         self._stop_ended_at: Instant | None = None
 
@@ -210,7 +211,8 @@ class Reactions(Concern):
         return self._moving.go_on(now) or has_moved
 
     def _is_due(self) -> bool:
-        if self._revision != self._conditions_revision():
+        was_waiting, self._was_waiting = self._was_waiting, self._parts.awaits_devices
+        if self._revision != self._conditions_revision() or was_waiting is not self._was_waiting:
             return True
         if self._escalations.awaited and (self._outbox.vehicle_changed or self._outbox.parts):
             return True

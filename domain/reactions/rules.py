@@ -95,7 +95,10 @@ class Rules(Concern):
         self._returns.pass_time(now)
 
     def settle(self, now: Instant) -> bool:
-        """Let one rule act, or one system return; return whether one did."""
+        """Let one rule act, or one system return; return whether one did.
+
+        While other computers may yet be heard, none does.
+        """
         if not self._rules:
             return False
         touched = self._about.keys() & self._outbox.parts
@@ -104,6 +107,8 @@ class Rules(Concern):
         if self._health.is_stopped:
             self._matching.stop()
             self._returns.stop()
+        if self._parts.awaits_devices:
+            return is_explained
         return self._act(now) or is_explained
 
     # --- what holds ------------------------------------------------------------------------------

@@ -18,7 +18,8 @@ class Triggers:
     """Judges conditions: one calls for a reaction once it was true for a time, until it is false.
 
     Nodes of which nothing was ever heard count as unknown for some time after a start: that they
-    are unreachable then is how each node of each robot begins.
+    are unreachable then is how each node of each robot begins. As long as other computers may yet
+    be heard, no condition is known.
     """
 
     def __init__(
@@ -145,6 +146,8 @@ class Triggers:
     # --- inside ----------------------------------------------------------------------------------
 
     def _truth(self, reaction: Reaction, now: Instant) -> Truth:
+        if self._parts.awaits_devices:
+            return Truth.UNKNOWN
         truth = reaction.conditions.truth(reaction.declared.when)
         unheard = self._unheard.get(reaction)
         if unheard and now < self._heard_by:

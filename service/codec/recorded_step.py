@@ -43,12 +43,15 @@ def _checksum(outputs: Outputs) -> int:
     """Return 0 for outputs without changed views, and else what depends on nothing but them."""
     flags = (outputs.system_state, outputs.task_changed, outputs.vehicle_changed)
     begun = (outputs.change or "", outputs.task or "")
-    if not (any(flags) or any(begun) or outputs.parts or outputs.signals or outputs.errors):
+    views = (outputs.parts, outputs.signals, outputs.errors, outputs.devices)
+    if not (any(flags) or any(begun) or any(views)):
         return 0
     # The order in which a set is walked differs from process to process.
     lines = [repr(flags), *begun, _joined(outputs.parts), _joined(outputs.signals)]
     if outputs.errors:
         lines.append(_joined(key.name for key in outputs.errors))
+    if outputs.devices:
+        lines.append(_joined(outputs.devices))
     return crc32("\n".join(lines).encode())
 
 
