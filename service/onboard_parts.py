@@ -5,11 +5,20 @@ from domain.onboard import Onboard
 from domain.parts.system_model import SmhModel
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
+from service.files.computer_share import share_of
 from service.files.robot_file import RobotSettings
 
 
 def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboard:
-    """Return the supervision and the navigation of a robot."""
+    """Return the supervision and the navigation of a robot, or of the share of one device.
+
+    Args:
+        model: Of the whole robot.
+        robot: Its settings; `device` says which computer this is.
+        start: The current time.
+    """
+    share = share_of(model, robot)
+    model, robot = share.model, share.robot
     limits = robot.to_vehicle_limits()
     settings = SupervisionSettings(
         robot.to_signal_settings(),
