@@ -8,11 +8,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal, NamedTuple
 
-<<<<<<< HEAD
 from domain.computers import ComputerName, StopView
-=======
-from domain.computers import ComputerName
->>>>>>> lk-supervisor
 from domain.findings import Blocker, Fact
 from domain.identifiers import ChangeId, TaskId
 from domain.inputs import ChangeRequest, SignalValue
