@@ -89,8 +89,6 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
-    peers: tuple[ComputerName, ...] = ()
-    """The other computers of the robot, which stop it as well; empty: it has one computer."""
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
     """Computers that own nodes; empty: all nodes are those of this one."""
     devices_heard_within: Duration = seconds(1.5)
@@ -105,6 +103,9 @@ class SupervisionSettings:
     def nodes_of_devices(self) -> Mapping[PartName, Sequence[PartName]]:
         """Return by device, whose errors are named as those of parts are, the nodes it owns."""
         return {PartName(name): each.nodes for name, each in self.devices.items()}
+
+    peers: tuple[ComputerName, ...] = ()
+    """The other computers of the robot, which stop it as well; empty: it has one computer."""
 
 
 class Supervision:
