@@ -6,9 +6,8 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
@@ -17,11 +16,13 @@ from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
 from domain.commands import TellStops
 from domain.computers import ComputerName
-from domain.concern import Concern, settle
+from domain.concern import Concern, overrides, settle, takers_of
 from domain.conditions.watched import WatchedConditions
 from domain.devices.device_view import DeviceView
 from domain.devices.devices import Devices
-from domain.devices.settings import DeviceSettings
+from domain.devices.lead import Lead
+from domain.devices.lead_view import LeadView
+from domain.devices.settings import DeviceSettings, LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
@@ -89,6 +90,8 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
+    lead: LeadSettings | None = None
+    """Of a device, which follows a supervisor; None: this computer follows nobody."""
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
     """Computers that own nodes; empty: all nodes are those of this one."""
     devices_heard_within: Duration = seconds(1.5)
@@ -148,6 +151,7 @@ class Supervision:
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
         self._reactions = self._reactions_by(displacing, reactions, guards, start)
+        self._lead = self._lead_by(settings.lead, start)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -156,6 +160,8 @@ class Supervision:
             self._emergency_stop,
             devices,
             ModeLimits(settings.signals, parts, health, outbox),
+            # It rejects what is the supervisor's to ask, before anything comes of it.
+            *(() if self._lead is None else (self._lead,)),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -165,7 +171,8 @@ class Supervision:
             self._changing,
             # What sets targets in force, the stronger first.
             self._reactions,
-            *self._displacers(guards, settings.rules, displacing),
+            # A device leaves degrading and climbing back to its supervisor.
+            *(self._displacers(guards, settings.rules, displacing) if self._lead is None else ()),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
@@ -210,6 +217,12 @@ class Supervision:
             start,
         )
 
+    def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
+        if settings is None:
+            return None
+        parts, changing, reactions = self._parts, self._changing, self._reactions
+        return Lead(settings, parts, changing, reactions, self._health, self._outbox, start)
+
     def _displacers(
         self, guards: Guards, rules: RuleSettings, displacing: Displacing
     ) -> tuple[Concern, Concern]:
@@ -224,10 +237,10 @@ class Supervision:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
         self._health.error_list.mark_start()
         self._outbox.errors.clear()  # What is on from the start is no change.
-        self._takers = _takers(self._concerns)
-        self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
-        self._settling = [c for c in self._concerns if _overrides(c, "settle")]
-        self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
+        self._takers = {TimePassed: (), **takers_of(self._concerns)}
+        self._clocked = [c for c in self._concerns if overrides(c, "wake_at")]
+        self._settling = [c for c in self._concerns if overrides(c, "settle")]
+        self._portioned = [c for c in self._concerns if overrides(c, "go_on")]
         self._has_more = False
         self._max_rounds = _SPARE_ROUNDS + len(self.model.parts)
         self._wake_at = self._next_wake()
@@ -360,6 +373,8 @@ class Supervision:
         Raises:
             PilothouseError: The request would be rejected.
         """
+        if self._lead is not None:
+            self._lead.check(request)
         return self._changing.plan(request)
 
     def change(self, identity: str) -> ChangeView:
@@ -458,6 +473,10 @@ class Supervision:
         stopped, holds = self.emergency_stop().engaged, self.driving.holds
         return may_loosen(given, is_stopped=stopped, holds=holds)
 
+    def lead(self) -> LeadView | None:
+        """Return whose word counts at this device; None: this computer follows nobody."""
+        return None if self._lead is None else self._lead.view()
+
     def devices(self) -> Mapping[ComputerName, DeviceView]:
         """Return the devices of the robot by name; empty: it has but one computer."""
         return self._devices.views()
@@ -469,19 +488,3 @@ class Supervision:
     def stops_to_tell(self) -> TellStops:
         """Return what other computers of the robot are to know of the stops of this one."""
         return self._emergency_stop.told()
-
-
-def _takers(
-    concerns: tuple[Concern, ...],
-) -> Mapping[type, tuple[Callable[[Any, Instant], None], ...]]:
-    """Return the handlers of each class of input, its owner first."""
-    takers: dict[type, tuple[Callable[[Any, Instant], None], ...]] = {TimePassed: ()}
-    for concern in concerns:
-        for kind, take in concern.takes.items():
-            takers[kind] = (*takers.get(kind, ()), take)
-    return takers
-
-
-def _overrides(concern: Concern, method: str) -> bool:
-    """Tell whether a concern overrides `method`; calling the empty ones would only cost time."""
-    return getattr(type(concern), method) is not getattr(Concern, method)

@@ -27,6 +27,7 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         limits,
         robot.to_rule_settings(),
         checkpoints=robot.to_checkpoint_settings(),
+        lead=robot.to_lead_settings(),
     )
     core = Supervision(model, settings, start)
     navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)

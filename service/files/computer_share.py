@@ -43,7 +43,8 @@ class SettingsOfDevice(RobotSettings):
 
     def to_lead_settings(self) -> LeadSettings:
         """Return what the device must know to judge whose word counts."""
-        return LeadSettings(self._own.name, self._own.offline, self.link.lost)
+        supervisor_at = next(iter(self.link.connect), "")
+        return LeadSettings(self._own.name, self._own.offline, self.link.lost, supervisor_at)
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,12 +57,16 @@ def test_devices_are_listed_with_what_each_does_when_it_is_cut_off(
     service.items = [BASE, ARM]
 
     assert main(["devices"]) == 1
-    assert capsys.readouterr().out.splitlines() == [
-        "device  state      heard     parts         when cut off                        stops",
-        "base    connected  now       drive_base    after 2 s: drive_base to inactive  none",
-        "arm     lost       12 s ago  arm, gripper  stays as it is                     arm-7",
-        "  nothing was heard for 1.5 s",
-    ] or True
+    assert (
+        capsys.readouterr().out.splitlines()
+        == [
+            "device  state      heard     parts         when cut off                        stops",
+            "base    connected  now       drive_base    after 2 s: drive_base to inactive  none",
+            "arm     lost       12 s ago  arm, gripper  stays as it is                     arm-7",
+            "  nothing was heard for 1.5 s",
+        ]
+        or True
+    )
 
 
 def test_where_all_are_connected_the_exit_code_says_so(service: Service) -> None:
