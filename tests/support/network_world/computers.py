@@ -7,6 +7,7 @@ from random import Random
 from domain.computers import SUPERVISOR, ComputerName
 from domain.inputs import Restored
 from domain.kept import Keeping, Kept
+from domain.lifecycle import LifecycleState
 from domain.link.messages import Message
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
@@ -48,11 +49,12 @@ class Disk:
         state = {name: value for name, value in vars(self).items() if name != "_backups"}
         self._backups.append({**state, "_values": dict(self._values)})
 
-    def open(self, store: Store, rng: Random) -> Restored:
+    def open(self, store: Store, run: str, rng: Random) -> Restored:
         """Return what a process that is started finds.
 
         Args:
             store: Whether it is as it was left.
+            run: Name of the process.
             rng: Chooses a backup, if one is put back.
         """
         if store is Store.LOST:
@@ -64,7 +66,9 @@ class Disk:
             vars(self).update({**backup, "_values": dict(backup["_values"])})  # type: ignore[call-overload]
         self._boot += 1
         values = tuple(self._values.values())
-        return Restored(values, self._boot, self._next_event, self._changes + 1)
+        return Restored(
+            values, self._boot, self._next_event, self._changes + 1, run=run
+        )
 
 
 class Computer:
@@ -115,6 +119,12 @@ class Computer:
             self.mute.add(node)
         else:
             self.mute.discard(node)
+
+    def mend(self, node: PartName, now: Instant) -> None:
+        """Let nothing be wrong with a node; one that ended is started again."""
+        if self.nodes.state_of(node) is LifecycleState.FINALIZED:
+            self.set_fault(node, Fault.DIE, now)
+        self.set_fault(node, None, now)
 
     def fall_asleep(self, until: Instant) -> None:
         """Let its process do nothing until then."""

@@ -4,6 +4,7 @@ from domain.computers import SUPERVISOR, ComputerName, DeviceState
 from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.lifecycle import LifecycleState
 from domain.simulation.network import Wire
+from domain.snapshot import EmergencyStopView
 from domain.state_and_mode import ModeName, PartName
 from domain.supervision import Supervision
 from tests.support.models import ACTUATION, ARM, BASE, PERFORMANCE
@@ -14,6 +15,8 @@ from tests.support.network_world.world import World
 
 WHOLE_S = 5.0
 """After which everything is known everywhere."""
+LOST_AMONG_DEVICES_S = 7.5
+"""After which a device gives up to hear of another one."""
 TOLD_S = 0.15
 """Within which all know of an emergency stop: one beat, and the way."""
 
@@ -64,12 +67,22 @@ def _parameters(core: Supervision, node: PartName) -> dict[str, object]:
 
 
 def a_release_ends_all_stops(world: World) -> None:
-    """Release at the supervisor all that it sees, which is all that there is."""
+    """Release at the supervisor all that it sees, which is all that there is.
+
+    Another device may know of a stop through a process that is gone: until it gives up to hear of
+    it, or another process takes its place.
+    """
     world.ask(SUPERVISOR, EmergencyStopRequest(False, "all clear", ADA))
     world.wait(1.0)
-    for _, process in world.running:
-        view = process.core.emergency_stop()
-        assert not view.engaged, f"{process.name} is stopped: {view}"
+    view = world.supervisor.core.emergency_stop()
+    assert not view.engaged, f"the supervisor is stopped: {view}"
+    world.wait_until(lambda: not _stopped(world), LOST_AMONG_DEVICES_S)
+    assert not _stopped(world), f"stopped are {_stopped(world)}"
+
+
+def _stopped(world: World) -> dict[ComputerName, EmergencyStopView]:
+    views = {p.name: p.core.emergency_stop() for _, p in world.running}
+    return {name: view for name, view in views.items() if view.engaged}
 
 
 def targets_are_pursued(world: World) -> None:

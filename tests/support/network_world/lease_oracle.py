@@ -59,9 +59,9 @@ class LeaseOracle:
     def _period(one: ComputerName, other: ComputerName) -> Duration:
         return BEAT if SUPERVISOR in (one, other) else BEAT_AMONG_DEVICES
 
-    def awoke(self, process: Process) -> None:
+    def awoke(self, process: Process, now: Instant) -> None:
         """Note that a process slept until now, and so sent nothing."""
-        self._awake_since[process.incarnation] = process.now
+        self._awake_since[process.incarnation] = now
 
     def told(self, process: Process, inputs: tuple[Input, ...]) -> None:
         peers = self._peers[process.incarnation]

@@ -19,7 +19,7 @@ from domain.link.outputs import Sending
 from domain.timebase import Instant
 from tests.support.network_world.processes import Process, Step
 
-OrderId = tuple[Incarnation, int]
+OrderId = tuple[Incarnation, ComputerName, int]
 HEARD = (DeviceState.CONNECTED, DeviceState.LATE)
 TO_REST = (Transition.DEACTIVATE, Transition.CLEANUP, Transition.SHUTDOWN)
 
@@ -60,8 +60,9 @@ class OrderOracle:
         if isinstance(sending.message, NodeOrder):
             order = sending.message
             assert order.incarnation == process.incarnation, "an order in the name of another run"
-            assert (order.incarnation, order.seq) not in self._sent_at, "two orders of one number"
-            self._sent_at[order.incarnation, order.seq] = process.now
+            number = (order.incarnation, sending.to, order.seq)
+            assert number not in self._sent_at, f"{order} has the number of an earlier one"
+            self._sent_at[number] = process.now
 
     def followed_by(self, device: Process) -> SupervisorStatus | None:
         """Return what a device knows of its supervisor."""
@@ -106,7 +107,8 @@ class OrderOracle:
     def _judge(self, process: Process, order: NodeOrder) -> None:
         """Judge an order that a device carries out."""
         known = self._known[process.incarnation]
-        sent_at, follows = self._sent_at[order.incarnation, order.seq], known.follows
+        sent_at = self._sent_at[order.incarnation, process.name, order.seq]
+        follows = known.follows
         self.counts["orders"] += 1
         assert order.command.node in process.at.node_names, f"{order} is for another's node"
         assert follows is not None, f"{order} before any supervisor was followed"

@@ -13,37 +13,15 @@ from domain.commands import AskFacts, Command, LinkCommand, NodeCommand
 from domain.computers import ComputerName, Incarnation
 from domain.errors import PilothouseError
 from domain.inputs import Input, NodeAnswer, NodeReport, Restored, TimePassed
-from domain.link.messages import Message, Told
+from domain.link.device_link import DeviceLink
+from domain.link.messages import Message
 from domain.link.outputs import LinkOutputs, Sending
+from domain.link.supervisor_link import SupervisorLink
 from domain.outbox import Outputs
 from domain.simulation.nodes import SimulatedNodes
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision
 from domain.timebase import Duration, Instant
-
-
-class LinkEnd(Protocol):
-    """The state machine of one end of the link: of a supervisor, or of a device."""
-
-    def hear(self, sender: ComputerName, message: Message, now: Instant) -> LinkOutputs:
-        """Take a message in."""
-        ...
-
-    def tell(self, command: NodeCommand | LinkCommand, now: Instant) -> LinkOutputs:
-        """Tell other computers what the core says."""
-        ...
-
-    def note(self, told: Told, now: Instant) -> LinkOutputs:
-        """Tell the supervisor what a node of this computer says."""
-        ...
-
-    def pass_time(self, now: Instant) -> LinkOutputs:
-        """Do what is due."""
-        ...
-
-    def wake_at(self) -> Instant | None:
-        """Return when something is due."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +72,7 @@ class Process:
         self,
         surroundings: Surroundings,
         core: Supervision,
-        link: LinkEnd,
+        link: SupervisorLink | DeviceLink,
         incarnation: Incarnation,
         now: Instant,
     ) -> None:
@@ -103,7 +81,6 @@ class Process:
         self.link = link
         self.incarnation = incarnation
         self.started_at = now
-        self.is_supervisor = not hasattr(link, "note")
         self.steps: list[Step] = []
         """All that happened, for a replay."""
         self.now = now
@@ -115,6 +92,11 @@ class Process:
     def name(self) -> ComputerName:
         """Return the name of its computer."""
         return self.at.name
+
+    @property
+    def is_supervisor(self) -> bool:
+        """Tell whether it supervises."""
+        return isinstance(self.link, SupervisorLink)
 
     @property
     def local_now(self) -> Instant:
@@ -178,8 +160,8 @@ class Process:
 
     def _node_says(self, message: NodeReport | NodeAnswer) -> None:
         self._inputs.append(message)
-        if not self.is_supervisor:
-            self._follow(self.link.note(message, self.local_now))
+        if isinstance(self.link, DeviceLink):
+            self.link.note(message, self.local_now)
         self._work()
 
     def _give(self, given: Input) -> None:

@@ -20,8 +20,8 @@ class _Seen:
     all: frozenset[StopId] = frozenset()
     newest: dict[Incarnation, int] = field(default_factory=dict)
     """`seq` of the newest beat that it read, by who sent it."""
-    told_at: dict[ComputerName, Instant] = field(default_factory=dict)
-    """When it sent a beat to each computer last."""
+    told: dict[ComputerName, tuple[Instant, frozenset[StopId]]] = field(default_factory=dict)
+    """When it sent a beat to each computer last, with which stops."""
     changed_at: Instant | None = None
     """When its own stops changed, until it is known that it told so."""
 
@@ -61,9 +61,8 @@ class StopOracle:
 
     def sent(self, process: Process, sending: Sending) -> None:
         if isinstance(sending.message, Beat):
-            seen = self._seen[process.incarnation]
-            seen.told_at[sending.to] = process.now
-            assert {stop.id for stop in sending.message.stops} == seen.own, "a beat tells all stops"
+            stops = frozenset(stop.id for stop in sending.message.stops)
+            self._seen[process.incarnation].told[sending.to] = (process.now, stops)
 
     def read(self, process: Process, message: Message) -> None:
         """See what a process knows after it read a message."""
@@ -100,8 +99,9 @@ class StopOracle:
         """Judge, at the end of an instant, whether all that changed was told at once."""
         for seen in self._seen.values():
             if seen.changed_at is not None:
-                for name, at in seen.told_at.items():
-                    assert at >= seen.changed_at, f"{name} was not told of a stop at once"
+                for name, (at, stops) in seen.told.items():
+                    assert at >= seen.changed_at, f"{name} was not told of {seen.own} at once"
+                    assert stops == seen.own, f"{name} was told of {stops}, not of {seen.own}"
                 seen.changed_at = None
 
     @staticmethod

@@ -42,7 +42,7 @@ def _fault_of(story: Story) -> World | str:
 def _replay(process: Process, story: Story) -> None:
     """Give a core of its own all inputs of a process again: the same follows."""
     first = process.started_at + process.at.clock_ahead
-    core = make_core(process.name, story.arrangement, process.incarnation, first)
+    core = make_core(process.name, story.arrangement, first)
     for number, step in enumerate(process.steps):
         again = Step(step.at, step.given, core.handle(step.given, step.at))
         if again.outputs != step.outputs:

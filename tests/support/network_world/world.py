@@ -1,5 +1,6 @@
 """A robot of several computers, and the network between them, in one virtual time."""
 
+from collections.abc import Callable
 from functools import partial
 from itertools import permutations
 from random import Random
@@ -119,6 +120,12 @@ class World:
         """Let time pass."""
         self.run(to_seconds(self.now) + duration_s)
 
+    def wait_until(self, is_so: Callable[[], bool], most_s: float) -> None:
+        """Let time pass until something is so, but not for ever."""
+        end = to_seconds(self.now) + most_s
+        while not is_so() and to_seconds(self.now) < end:
+            self.wait(0.25)
+
     def _due(self) -> Instant | None:
         due = [computer.wake_at() for computer in self.computers.values()]
         due += [self.network.wake_at(), seconds(self._left[-1][0]) if self._left else None]
@@ -137,7 +144,7 @@ class World:
             return
         if computer.was_asleep:
             computer.was_asleep = False
-            self.oracles.lease.awoke(process)
+            self.oracles.lease.awoke(process, self.now)
             if not self.reads_first:
                 process.advance(self.now)
         while computer.unread:
@@ -170,7 +177,7 @@ class World:
         if computer is None or computer.process is None or sender not in self.computers:
             return
         name = self.computers[sender].name
-        if computer.asleep_until > self.now:
+        if computer.was_asleep:
             computer.unread.append((name, message))
         else:
             self._read(computer.process, name, message)
@@ -221,7 +228,7 @@ class World:
             self._set_wires(computer)
             computer.asleep_until = min(computer.asleep_until, self.now)
             for node in computer.node_names:
-                computer.set_fault(node, None, self.now)
+                computer.mend(node, self.now)
             self._start(computer, Store.KEPT)
 
     def _crash(self, computer: Computer) -> None:
@@ -236,8 +243,8 @@ class World:
     def _start(self, computer: Computer, store: Store) -> None:
         if computer.process is not None:
             return
-        restored = computer.disk.open(store, self.rng)
         incarnation = Incarnation(self._new_id())
+        restored = computer.disk.open(store, incarnation, self.rng)
         surroundings = Surroundings(
             computer.name,
             computer.nodes,
@@ -248,7 +255,7 @@ class World:
             _Witness(self, computer),
         )
         local = self.now + computer.clock_ahead
-        core = make_core(computer.name, self.story.arrangement, incarnation, local)
+        core = make_core(computer.name, self.story.arrangement, local)
         link = make_link(computer.name, self.story.arrangement, incarnation, self._new_id, local)
         process = Process(surroundings, core, link, incarnation, self.now)
         computer.process = process
