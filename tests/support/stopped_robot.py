@@ -65,9 +65,11 @@ class Robot:
         self.stop.take_request(EmergencyStopRequest(False, reason, Actor(by), named), now)
         return self._told()
 
-    def hear(self, computer: ComputerName, now: int, *stops: PeerStop) -> list[str]:
+    def hear(
+        self, computer: ComputerName, now: int, *stops: PeerStop, is_all: bool = True
+    ) -> list[str]:
         """Hear which stops another computer has."""
-        self.stop.take_stops_of_peer(PeerStops(computer, stops), now)
+        self.stop.take_stops_of_peer(PeerStops(computer, stops, is_all), now)
         return self._told()
 
     def hear_release(self, computer: ComputerName, now: int, *stops: str) -> list[str]:
