@@ -92,7 +92,7 @@ def test_a_stop_of_the_device_that_came_while_it_was_cut_off_outlives_the_releas
     robot.hear(STOP)
     assert robot.core.emergency_stop().engaged
     robot.release_stop()
-    assert robot.told[-1] == AskRelease(ARM, (STOP.id,))
+    assert robot.told_others[-1] == AskRelease(ARM, (STOP.id,))
     robot.hear()
     assert not robot.core.emergency_stop().engaged
 
@@ -105,7 +105,7 @@ def test_a_supervisor_that_starts_while_the_device_is_away_is_stopped_by_its_sto
     again.read(**GOOD)
     again.give(kept.restored())
 
-    assert again.told == [TellStops(())]
+    assert again.told_others == [TellStops(())]
     assert again.core.emergency_stop().not_heard == (ARM,)
     with pytest.raises(BlockedError):
         again.ask_mode(ACTUATION, "MODERATE")

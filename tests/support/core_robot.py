@@ -41,7 +41,7 @@ class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
         self.events: list[RecordedEvent] = []
         self.commands: list[Command] = []
         """What was sent to nodes and vehicle."""
-        self.told: list[Command] = []
+        self.told_others: list[Command] = []
         """What other computers of the robot were told."""
         self.advance(0)
 
@@ -51,7 +51,7 @@ class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
         self.events += outputs.events
         for command in outputs.commands:
             if isinstance(command, LinkCommand):
-                self.told.append(command)
+                self.told_others.append(command)
                 continue
             assert isinstance(command, NodeCommand | Drive), "goals stay on board"
             self.commands.append(command)
