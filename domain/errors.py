@@ -13,6 +13,7 @@
     |   +-- UnknownTaskError
     |   +-- UnknownEventError
     |   +-- UnknownControllerError
+    |   +-- UnknownDeviceError
     +-- InvalidValueError             a value that is never valid: type, range, NaN
     |   +-- FarStartError             a path that begins too far from the vehicle
     +-- InvalidModelError             a model file with findings
@@ -23,6 +24,8 @@
     |   +-- NotReportedError
     |   +-- ReservedHoldError
     |   +-- TooManyHoldsError
+    |   +-- OwnedBySupervisorError
+    |   +-- OfflineError
     +-- BackendUnavailableError       the backend is down: no node can be reached
     +-- StorageDegradedError          storage cannot be written, or not be read
 
@@ -176,6 +179,12 @@ class UnknownControllerError(UnknownNameError):
     code = "UNKNOWN_CONTROLLER"
 
 
+class UnknownDeviceError(UnknownNameError):
+    """An unknown device: the robot file has none of this name."""
+
+    code = "UNKNOWN_DEVICE"
+
+
 class InvalidValueError(PilothouseError):
     """A value of the wrong type, out of range or not finite; `pointer` names it in a body."""
 
@@ -307,6 +316,43 @@ class TooManyHoldsError(RefusedError):
 
     def __init__(self, limit: int) -> None:
         super().__init__(f"there are {limit} holds already")
+
+
+class OwnedBySupervisorError(RefusedError):
+    """A request at a device that is the supervisor's to make."""
+
+    code = "OWNED_BY_SUPERVISOR"
+
+    def __init__(self, what: str, supervisor_at: str = "") -> None:
+        """State what is commanded elsewhere.
+
+        Args:
+            what: The requested part, or the vehicle.
+            supervisor_at: Where the supervisor is; empty: on the same computer.
+        """
+        super().__init__(f"{what} is commanded by the supervisor, which is connected")
+        where = f" at {supervisor_at}" if supervisor_at else ""
+        self.hint = f"request it of the supervisor{where}; stop, hold, deactivate are possible here"
+
+
+class OfflineError(RefusedError):
+    """A request at a device that does not hear its supervisor."""
+
+    code = "OFFLINE"
+
+    def __init__(self, what: str, device: str, reason: str = "") -> None:
+        """State why nothing is commanded.
+
+        Args:
+            what: The requested part, or the vehicle.
+            device: The device.
+            reason: Why it is not connected; empty: it never was since its start.
+        """
+        why = reason or "it was never connected since its start"
+        super().__init__(
+            f"{what} is commanded by the supervisor, which {device} cannot hear: {why}"
+        )
+        self.hint = "restore the connection; stop, hold, deactivate are possible here"
 
 
 class BackendUnavailableError(PilothouseError):

@@ -213,7 +213,7 @@ class Changes:
         if change.targets:
             self._kept_targets.note(change.part, change.targets)
 
-    def cancel(self, change: ChangeId, now: Instant) -> None:
+    def cancel(self, change: ChangeId, now: Instant, why: str = "canceled on request") -> None:
         """Start no further step of a change; without effect if all its nodes have ended.
 
         A superseded change has ended, but may still be driving nodes that no other change took.
@@ -227,7 +227,13 @@ class Changes:
         self._drop(found.open.copy(), StepStatus.CANCELED, now)
         found.leave(list(found.open), StepStatus.CANCELED, now)
         if not found.status.is_final:
-            self._end_by(found, ChangeStatus.CANCELED, "canceled on request", now)
+            self._end_by(found, ChangeStatus.CANCELED, why, now)
+
+    def forget_targets(self, parts: Iterable[PartName]) -> None:
+        """Let parts have no requested target any more."""
+        none: dict[PartName, StateAndMode | None] = dict.fromkeys(parts)
+        self._parts.ask(none)
+        self._kept_targets.restore_before(none)
 
     def report(self, report: NodeReport, now: Instant) -> None:
         """Judge the step in flight by a report that the parts have processed, and continue."""

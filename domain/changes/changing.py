@@ -1,6 +1,6 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
@@ -83,9 +83,9 @@ class Changing(Concern):
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
         return {
-            ModeRequest: self._take_request,
-            TransitionRequest: self._take_request,
-            ParametersRequest: self._take_request,
+            ModeRequest: self.take_request,
+            TransitionRequest: self.take_request,
+            ParametersRequest: self.take_request,
             CancelRequest: self._take_cancel,
             NodeReport: self._follow_report,
             NodeAnswer: self._take_answer,
@@ -119,7 +119,12 @@ class Changing(Concern):
         has_moved |= self._waiting.settle(now)
         return self._restoring.begin_next(now) or has_moved
 
-    def _take_request(self, request: ChangeRequest, now: Instant) -> None:
+    def take_request(self, request: ChangeRequest, now: Instant) -> None:
+        """Begin a change, or let it wait.
+
+        Raises:
+            PilothouseError: The request is rejected.
+        """
         part = check_request(self._parts.model, self._parts.facts, request)
         try:
             goal = self._admit(request)
@@ -171,6 +176,27 @@ class Changing(Concern):
 
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
         self._changes.note_backlog(backlog)
+
+    # --- for the device that follows a supervisor ------------------------------------------------
+
+    def step_in_flight(self, node: PartName) -> Step | None:
+        """Return the step of a change that a node is executing; None: there is none."""
+        return self._changes.step_in_flight(node)
+
+    def forget_targets(self, parts: Iterable[PartName]) -> None:
+        """Let parts have no requested target any more; what is in progress goes on."""
+        asked = [part for part in parts if self._parts.asked(part) is not None]
+        if asked:
+            self._changes.forget_targets(asked)
+            self._restoring.forget(asked)
+
+    def drop_all(self, why: str, now: Instant) -> None:
+        """Cancel all changes, and forget all requested targets; steps in flight arrive."""
+        for change in self._changes.all():
+            if not change.is_over:
+                self._waiting.drop(change.id)
+                self._changes.cancel(change.id, now, why)
+        self.forget_targets(self._parts.model.parts)
 
     # --- for concerns that set targets in force ---------------------------------------------------
 

@@ -53,6 +53,8 @@ class LeadSettings:
     offline: OfflineSettings = NOTHING_OFFLINE
     lost: Duration = seconds(1.5)
     """How long after the last echo the supervisor counts as lost."""
+    supervisor_at: str = ""
+    """Where the supervisor is, for people; empty: on the same computer."""
 
     @property
     def waits(self) -> Duration:

@@ -9,6 +9,7 @@ from domain.events import (
     devices,
     driving,
     health,
+    lead,
     parts,
     reactions,
     service,
@@ -24,7 +25,18 @@ def _kinds(*modules: ModuleType) -> Iterator[type[Event]]:
                 yield item
 
 
-_MODULES = (announcing, parts, changes, devices, health, driving, reactions, service, targets)
+_MODULES = (
+    announcing,
+    parts,
+    changes,
+    devices,
+    health,
+    driving,
+    lead,
+    reactions,
+    service,
+    targets,
+)
 
 EVENTS: Mapping[str, type[Event]] = {
     kind.kind: kind for kind in sorted(_kinds(*_MODULES), key=lambda item: item.kind)

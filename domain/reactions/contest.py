@@ -58,7 +58,7 @@ class Contest:
                 continue
             standing = self._standing(reaction, outcome, is_exhausted, now)
             outcome.standings[reaction] = standing
-            if reaction.arm is not Arm.ACTIVE or not reaction.declared.action.has_budget:
+            if not reaction.may_act or not reaction.declared.action.has_budget:
                 continue
             if standing.state is ReactionState.ACTING:
                 outcome.moving[reaction.part] = reaction
@@ -76,7 +76,7 @@ class Contest:
     ) -> Standing:
         if is_exhausted(reaction):
             return Standing(ReactionState.EXHAUSTED)
-        is_active = reaction.arm is Arm.ACTIVE
+        is_active = reaction.may_act
         acting = Standing(ReactionState.ACTING if is_active else ReactionState.PASSIVE)
         if not reaction.declared.action.has_budget:
             return acting

@@ -85,7 +85,7 @@ class Effects:
 
     def _ends(self, reaction: Reaction, standing: Standing) -> Iterator[Event]:
         """Yield that what was told to act does so no more; one that is overruled is told so."""
-        is_active = reaction.arm is Arm.ACTIVE
+        is_active = reaction.may_act
         if is_active and standing.state in (ReactionState.ACTING, ReactionState.EXHAUSTED):
             self._acting.add(reaction)
         elif reaction in self._acting:
@@ -98,7 +98,7 @@ class Effects:
 def _begins(reaction: Reaction, standing: Standing) -> Iterator[Event]:
     """Yield what is told of how a reaction is to stand."""
     part, name, action = reaction.part, reaction.name, reaction.declared.action
-    is_active = reaction.arm is Arm.ACTIVE
+    is_active = reaction.may_act
     match standing.state:
         case ReactionState.ACTING:
             yield ReactionActing(part, name, action, _words(reaction.why()))
@@ -114,7 +114,7 @@ def _begins(reaction: Reaction, standing: Standing) -> Iterator[Event]:
 
 def _action_of(reaction: Reaction) -> Action | None:
     """Return what a reaction does now; None: nothing."""
-    if reaction.arm is not Arm.ACTIVE:
+    if not reaction.may_act:
         return None
     if reaction.state is ReactionState.ACTING:
         return reaction.declared.action
@@ -124,8 +124,8 @@ def _action_of(reaction: Reaction) -> Action | None:
 
 
 def _end_reason(reaction: Reaction) -> str:
-    if reaction.arm is not Arm.ACTIVE:
-        return f"it is {reaction.arm}"
+    if not reaction.may_act:
+        return f"it is {reaction.arm}" if reaction.arm is not Arm.ACTIVE else "another acts"
     if reaction.state is ReactionState.EXHAUSTED:
         return "acknowledged"
     return f"no longer true: {reaction.declared.when.text}"

@@ -6,7 +6,7 @@ from domain.events.service import NotRestored
 from domain.inputs import Restored
 from domain.kept import KeptReaction
 from domain.outbox import Outbox
-from domain.reaction_terms import Arm, ReactionState
+from domain.reaction_terms import ReactionState
 from domain.reactions.budgets import Budgets
 from domain.reactions.escalations import Escalations
 from domain.reactions.reaction import Reaction
@@ -69,7 +69,7 @@ class KeptReactions:
             yield reaction
 
     def _restore(self, reaction: Reaction, kept: KeptReaction, since: Instant) -> None:
-        is_active = reaction.arm is Arm.ACTIVE
+        is_active = reaction.may_act
         state = ReactionState.ACTING if is_active else ReactionState.PASSIVE
         reaction.state = ReactionState.EXHAUSTED if kept.is_exhausted else state
         reaction.is_exhausted = kept.is_exhausted

@@ -36,6 +36,9 @@ class Reaction:
     conditions: WatchedConditions
     """Read only."""
     arm: Arm
+    """Whether it may act, as an operator or the model says."""
+    is_left: bool = False
+    """Acting is left to another computer, so that it only tells when it would act."""
     state: ReactionState = ReactionState.IDLE
     since: Instant | None = None
     """Since when it stands so; None: since the start."""
@@ -62,6 +65,11 @@ class Reaction:
     def part(self) -> PartName:
         """Return the part that it is declared for."""
         return self.declared.part
+
+    @property
+    def may_act(self) -> bool:
+        """Tell whether it acts once something calls for it."""
+        return self.arm is Arm.ACTIVE and not self.is_left
 
     @property
     def is_in_effect(self) -> bool:

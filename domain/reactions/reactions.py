@@ -314,6 +314,14 @@ class Reactions(Concern):
         self._kept.renew(reaction, now)
         self._views.note(reaction)
 
+    def let_act(self, *, acting: bool) -> None:
+        """Let all reactions act, or only tell when they would: another computer's word counts."""
+        for reaction in self._reactions:
+            if reaction.is_left is acting:
+                reaction.is_left = not acting
+                self._views.note(reaction)
+                self._revision = None
+
     # --- what can be seen ------------------------------------------------------------------------
 
     def view(self, part: PartName, name: str) -> ReactionView:

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
 from domain.computers import SUPERVISOR
+from domain.devices.own_signals import readable_signals
+from domain.devices.sub_model import sub_model
 from domain.errors import near_match
 from domain.lifecycle import LifecycleState
 from domain.parts.system_model import SmhModel
@@ -41,7 +43,8 @@ def faults_of_devices(
             yield (name, *keys), code, message
         for keys, code, message in _of_signals(name, device, signals):
             yield (name, *keys), code, message
-        for keys, code, message in _of_offline(name, device, model, lost_s):
+        of_offline = list(_of_offline(name, device, model, lost_s))
+        for keys, code, message in of_offline or _of_guards(name, device, signals, model):
             yield (name, "offline", *keys), code, message
     yield from _owned_twice(devices, model)
     yield from _read_twice(devices, signals, model)
@@ -128,6 +131,20 @@ def _of_target(part: PartName, text: str, model: SmhModel) -> Iterator[tuple[str
         modes = ", ".join(model.modes_of(part))
         known = f"it has {modes}" if modes else "it has no modes"
         yield "UNKNOWN_MODE", f"{part} has no mode {target.mode!r}; {known}"
+
+
+def _of_guards(
+    name: str, device: DeviceBlock, signals: SignalsBlock, model: SmhModel
+) -> Iterator[Fault]:
+    """Yield targets with guards that the device cannot judge alone."""
+    if not device.offline.target:
+        return
+    read = readable_signals(signals.to_domain(), signals_of(device, signals, model))
+    own = sub_model(model, nodes_of(device, model), read)
+    for text, target in device.offline.target.items():
+        why = own.unjudged(part_name(text), StateAndMode.parse(target))
+        if why is not None:
+            yield ("target", text), "NOT_OWN", f"{why}, which {name} does not know when cut off"
 
 
 def _owned_twice(devices: Mapping[str, DeviceBlock], model: SmhModel) -> Iterator[Fault]:

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
-from domain.devices.settings import DeviceSettings, ownership_text
+from domain.devices.settings import DeviceSettings, LeadSettings, ownership_text
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
 from domain.health.checkpoints import CheckpointSettings
@@ -24,7 +24,7 @@ from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
 from service.files.device_faults import faults_of_devices
-from service.files.devices_block import DevicesBlock, device_settings
+from service.files.devices_block import DeviceName, DevicesBlock, device_settings
 from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.includes import (
     INCLUDE,
@@ -98,6 +98,9 @@ class RobotSettings(SettingsBlock):
     """Limits on what clients may request."""
     ros2: Ros2Block = Ros2Block()
     """ROS 2 topics of the robot. Without effect for a simulated robot."""
+    device: DeviceName | None = None
+    """The device that this file is read for. `pilothouse device NAME` sets it in its record, so
+    that the record can be replayed; leave it out of a file that all computers share."""
     devices: DevicesBlock = Field(default_factory=dict)
     """Further computers of the robot, by name, each with the parts that it alone commands. Default:
     there are none. Without effect in simulations."""
@@ -151,6 +154,10 @@ class RobotSettings(SettingsBlock):
         """Return what all computers must agree on besides the model, as one canonical text."""
         return ownership_text(self.to_device_settings(model), self.link.late, self.link.lost)
 
+    def to_lead_settings(self) -> LeadSettings | None:
+        """Return what a device must know to judge whose word counts; None: this is no device."""
+        return None
+
     def to_vehicle_limits(self) -> VehicleLimits:
         """Return the limits of the vehicle."""
         return self.vehicle.to_limits()
@@ -191,10 +198,22 @@ def written_out(text: str) -> str:
 
     It means the same when a later release has other templates.
     """
+    data = _plain_text(text)
+    return _written(data) if data.get(INCLUDE) else text
+
+
+def written_for_device(text: str, device: str) -> str:
+    """Return a valid robot file as the log of a device keeps it: it says which device that is."""
+    return _written({**_plain_text(text), "device": device})
+
+
+def _plain_text(text: str) -> dict[str, Any]:
     tree = read_tree(text)
     data = _plain(tree.documents[0], []) if tree.documents else None
-    if not isinstance(data, dict) or not data.get(INCLUDE):
-        return text
+    return data if isinstance(data, dict) else {}
+
+
+def _written(data: AnyMapping[str, Any]) -> str:
     merged = {key: value for key, value in with_includes(data).data.items() if key != INCLUDE}
     return json.dumps(merged, ensure_ascii=False, indent=2) + "\n"
 
@@ -286,6 +305,13 @@ def _faults(settings: RobotSettings, model: SmhModel) -> Iterator[Fault]:
     of_devices = faults_of_devices(settings.devices, settings.signals, model, settings.link.lost_s)
     for place, code, message in of_devices:
         yield ("devices", *place), code, message
+    if settings.device is not None and settings.device not in settings.devices:
+        known = ", ".join(settings.devices) or "none"
+        yield (
+            ("device",),
+            "INVALID_VALUE",
+            f"there is no device {settings.device!r}; known: {known}",
+        )
     yield from _faults_of_two_sources(settings)
 
 
