@@ -230,6 +230,8 @@ class World:
             for node in computer.node_names:
                 computer.mend(node, self.now)
             self._start(computer, Store.KEPT)
+        # What was sent before, and must not be lost, keeps what comes after it waiting.
+        self.run(to_seconds(self.network.empty_at() or self.now))
 
     def _crash(self, computer: Computer) -> None:
         if computer.process is not None:
