@@ -180,12 +180,15 @@ class WriteRecord:
 
 @dataclass(frozen=True, slots=True)
 class DeviceStatus:
-    """How the supervisor's connection to a device is; only a change is reported."""
+    """How the supervisor's connection to a device is; only a change is reported.
+
+    Its nodes are reported before it is connected, and as unreachable after it is lost.
+    """
 
     device: ComputerName
     state: DeviceState
     reason: str = ""
-    """Why it is not connected, in words; empty: it is."""
+    """Why it is late or not connected, as a sentence; empty: it is connected."""
     incarnation: Incarnation | None = None
     """The run of the device that is, or was last, dealt with; None: none was yet."""
     session: Session | None = None
@@ -203,7 +206,7 @@ class SupervisorStatus:
 
     state: DeviceState
     reason: str = ""
-    """Why it is not connected, in words; empty: it is."""
+    """Why it is late or not connected, as a sentence; empty: it is connected."""
     incarnation: Incarnation | None = None
 
 

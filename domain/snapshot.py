@@ -103,6 +103,9 @@ class PartView:
     """The change that drives this part; it may already be superseded elsewhere."""
     device: ComputerName | None = None
     """The computer that owns this node; None: this one."""
+    last_known: StateAndMode | None = None
+    """Of a node that is unreachable, where it was when it was heard last; None: it is reachable, or
+    was never heard, or it is a system."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
+from domain.computers import ComputerName
+from domain.devices.device_view import DeviceView
+from domain.devices.lead_view import LeadView
 from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     EmergencyStopView,
@@ -52,6 +55,12 @@ class Frame:
     short time ago."""
     reactions: Mapping[str, ReactionView]
     """As for `parts`, by name."""
+    devices: Mapping[ComputerName, DeviceView]
+    """As for `parts`; empty in all frames: the robot has one computer."""
+    lead: LeadView | None
+    """On a device, which it is and whose word counts; None: it is no device."""
+    lead_changed: bool
+    """As `task_changed`."""
     task: TaskView | None
     """The current task, or else the last one; None: there has been none."""
     task_changed: bool
@@ -88,6 +97,7 @@ class FrameFeed(Watched):
         self._ended_in: dict[str, int] = {}
         """Number of the frame that told the end of an error, the oldest first."""
         self._reactions: dict[str, ReactionView] = {}
+        self._devices: dict[ComputerName, DeviceView] = {}
         self._signals: dict[str, SignalView] = {}
         self._has_all = False
 
@@ -122,6 +132,7 @@ class FrameFeed(Watched):
         self._errors.take(frame.errors, frame.seq)
         self._forget_ended(frame)
         self._reactions.update(frame.reactions)
+        self._devices.update(frame.devices)
         self._signals.update(frame.signals)
         self._has_all = self._has_all or frame.full
         self._newest = frame
@@ -153,6 +164,7 @@ class FrameFeed(Watched):
                 signals=dict(self._signals),
                 errors=dict(self.errors),
                 reactions=dict(self._reactions),
+                devices=dict(self._devices),
                 full=True,
             )
         return self._complete
@@ -175,6 +187,7 @@ class FrameFeed(Watched):
             signals=dict(self._signals),
             errors=dict(self.errors_since(seen)),
             reactions=dict(self._reactions),
+            devices=dict(self._devices),
             full=False,
         )
 
@@ -219,6 +232,7 @@ def _all_changed(frame: Frame) -> Frame:
     """Return a frame that tells everything anew but parts, signals and errors."""
     return replace(
         frame,
+        lead_changed=True,
         task_changed=True,
         vehicle_changed=True,
         holds_changed=True,

@@ -7,6 +7,8 @@ from itertools import islice
 from operator import attrgetter
 from typing import Generic, TypeVar
 
+from domain.computers import ComputerName
+from domain.devices.device_view import DeviceView
 from domain.outbox import Outputs
 from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import ErrorKey, ErrorView, PartView, SignalView
@@ -21,6 +23,8 @@ log = logging.getLogger(__name__)
 Key = TypeVar("Key", PartName, ErrorKey)
 
 PERIOD = seconds(0.05)
+
+_NO_DEVICES: Mapping[ComputerName, DeviceView] = {}
 
 REPEATS_EVERY = seconds(0.5)
 """How often a signal is told whose value stays, and that is only received again: at 10 Hz, such
@@ -62,6 +66,7 @@ class FramePublisher:
         self._changed_parts = _Changed[PartName]()
         self._changed_errors = _Changed[ErrorKey]()
         self._changed_reactions: set[str] = set()
+        self._changed_devices: set[ComputerName] = set()
         self._changed_signals: set[str] = set()
         self._signals_told_at: dict[str, Instant] = {}
         self._task_changed = False
@@ -91,6 +96,7 @@ class FramePublisher:
         self._changed_parts.note(outputs.parts)
         self._changed_errors.note(outputs.errors)
         self._changed_reactions |= outputs.reactions
+        self._changed_devices |= outputs.devices
         self._changed_signals |= outputs.signals
         self._task_changed |= outputs.task_changed
         self._vehicle_changed |= outputs.vehicle_changed
@@ -106,7 +112,7 @@ class FramePublisher:
         self.seq += 1
         core = self._core
         holds, emergency_stop = core.driving.holds, core.emergency_stop()
-        last = self.frames.newest
+        lead, last = core.lead(), self.frames.newest
         frame = Frame(
             seq=self.seq,
             at=self._clock.now(),
@@ -115,6 +121,9 @@ class FramePublisher:
             signals=self._take_signals(full=full),
             errors=self._take_errors(full=full),
             reactions=self._take_reactions(full=full),
+            devices=self._take_devices(full=full),
+            lead=lead,
+            lead_changed=full or last is None or lead != last.lead,
             task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
@@ -154,6 +163,14 @@ class FramePublisher:
         if full:
             return self._core.reactions()
         return {key: self._core.reaction(key) for key in sorted(changed)}
+
+    def _take_devices(self, *, full: bool) -> Mapping[ComputerName, DeviceView]:
+        """Return all devices for a full frame, or else those that changed."""
+        changed, self._changed_devices = self._changed_devices, set()
+        if not full and not changed:
+            return _NO_DEVICES
+        views = self._core.devices()
+        return {name: view for name, view in views.items() if full or name in changed}
 
     def _take_signals(self, *, full: bool) -> Mapping[str, SignalView]:
         """Return the signals that changed; one that was only received again waits its turn."""

@@ -1,5 +1,8 @@
 """Makes the core of a robot from its settings, the same live and in a simulation."""
 
+from collections.abc import Iterable
+
+from domain.computers import SUPERVISOR, ComputerName
 from domain.navigation import Navigation
 from domain.onboard import Onboard
 from domain.parts.system_model import SmhModel
@@ -18,6 +21,8 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         start: The current time.
     """
     share = share_of(model, robot)
+    own = robot.device or SUPERVISOR
+    devices = {} if robot.device else {each.name: each for each in robot.to_device_settings(model)}
     model, robot = share.model, share.robot
     limits = robot.to_vehicle_limits()
     settings = SupervisionSettings(
@@ -27,8 +32,18 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         limits,
         robot.to_rule_settings(),
         checkpoints=robot.to_checkpoint_settings(),
+        peers=_peers(robot.devices, own),
+        devices=devices,
+        devices_heard_within=robot.link.lost,
         lead=robot.to_lead_settings(),
     )
     core = Supervision(model, settings, start)
     navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)
     return Onboard(core, navigation)
+
+
+def _peers(devices: Iterable[str], own: str) -> tuple[ComputerName, ...]:
+    """Return the other computers of a robot."""
+    if not devices:
+        return ()
+    return tuple(ComputerName(name) for name in (SUPERVISOR, *devices) if name != own)

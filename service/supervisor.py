@@ -10,6 +10,7 @@ from functools import partial
 
 from domain.actor import SERVICE
 from domain.commands import LinkCommand, PreemptGoal, SendGoal
+from domain.computers import ComputerName, Connection
 from domain.errors import PilothouseError
 from domain.findings import Finding
 from domain.inputs import HoldRequest, Input, Restored, ServiceStall
@@ -135,6 +136,10 @@ class Supervisor:
     def approach_limits(self) -> ApproachLimits:
         """Return what the vehicle can do, and from how far it approaches a path."""
         return self._onboard.navigation.approach_limits
+
+    def connection(self, computer: ComputerName) -> Connection:
+        """Return how the connection to another computer is doing."""
+        return Connection() if self.link is None else self.link.connection(computer)
 
     @property
     def epoch(self) -> str:

@@ -42,6 +42,7 @@ TAGS: Mapping[str, str] = MappingProxyType(
         "changes": "What became of the changes that were asked for, step by step.",
         "health": "Signals, the state of the robot that follows from them, and the emergency stop.",
         "reactions": "What the robot does while something is so, and whether it may.",
+        "devices": "The other computers of the robot: who owns what, and who is heard.",
         "drive": "The vehicle, its waypoint task, and who holds it.",
         "events": "What happened, in order.",
         "model": "The model of the robot's systems and nodes, and the check of any other one.",

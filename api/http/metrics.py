@@ -9,6 +9,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
+from api.http.device_metrics import DeviceCollector
 from api.http.gate.refusals import COUNTED, Refusals
 from domain.reaction_terms import ReactionState
 from domain.snapshot import ChangeStatus, Severity, SystemState
@@ -40,6 +41,7 @@ class Metrics:
         )
         supervisor.publisher.on_tick.append(period.observe)
         self.registry.register(_RobotCollector(supervisor))
+        self.registry.register(DeviceCollector(supervisor))
         self.registry.register(_ServiceCollector(supervisor))
         self.registry.register(_GateCollector(refusals))
 

@@ -19,11 +19,12 @@ def part_text(view: PartView, show: Callable[[Instant], str]) -> str:
         view: Of the part.
         show: Returns an instant as RFC 3339.
     """
-    target, effective, actual, since = (
+    target, effective, actual, since, last = (
         view.target,
         view.effective_target,
         view.actual,
         view.deviation_since,
+        view.last_known,
     )
     shown = {
         "name": view.name,
@@ -44,6 +45,8 @@ def part_text(view: PartView, show: Callable[[Instant], str]) -> str:
         "deviation_reason": view.deviation_reason,
         "reachable": view.reachable,
         "change": view.change,
+        "device": view.device,
+        "last_known": last and {"state": str(last.state), "mode": last.mode},
     }
     return to_json(shown).decode()
 

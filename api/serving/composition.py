@@ -10,19 +10,31 @@ from typing import Literal, TypeAlias
 
 from api.distribution import installed_version
 from api.http.limits import ServiceLimits
+from api.serving.computers import make_link
 from api.serving.data_folder import MEMORY, data_folder, robot_name
+from api.serving.misuse import MisuseError
 from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
+from service.files.computer_share import ComputerShare, UnknownDeviceError, share_of
 from service.files.model_file import LoadedModel, load_model, with_signals
-from service.files.robot_file import RobotSettings, read_robot_file, written_out
+from service.files.robot_file import (
+    RobotSettings,
+    read_robot_file,
+    written_for_device,
+    written_out,
+)
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
 from service.keeper import NO_STORES, Stores
+from service.link.device_end import DeviceEnd
+from service.link.place import Place, place_in
+from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.onboard_parts import make_onboard
-from service.ports import RobotBackend, SignalSource
+from service.ports import NodeBackend, RobotBackend, SignalSource
 from service.ros.backend.backend import Ros2Backend
 from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
@@ -83,10 +95,6 @@ class ServeOptions:
     """Whether the link may go over a network without certificates."""
 
 
-class MisuseError(Exception):
-    """Options of the command contradict each other; the message says what to do."""
-
-
 @dataclass(frozen=True, slots=True)
 class Composition:
     """The parts of a service, none of which runs yet."""
@@ -96,7 +104,10 @@ class Composition:
     gateway: RosGateway | None = None
     """Offers the robot to ROS 2; None: its nodes are simulated."""
     simulated: SimulatedParts | None = None
-    """The simulated robot, which a simulation can copy; None: the robot is real."""
+    """The simulated robot, which a simulation can copy; None: the robot is real, or only a part of
+    it is here."""
+    place: Place | None = None
+    """Where this computer is among those of the robot; None: it is the only one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,10 +115,27 @@ class RobotFiles:
     """What the files say of a robot."""
 
     name: str
+    """Of the robot, and of the device if it is one: what survives a restart is kept under it."""
     loaded: LoadedModel
+    """The model of the whole robot."""
     settings: RobotSettings
+    """Of the whole robot; `device` says which computer this is."""
     text: str
-    """Of the robot file, with what it includes written out; empty: there is none."""
+    """Of the robot file, as the log keeps it; empty: there is none."""
+    share: ComputerShare
+    """What this computer runs of it."""
+
+    @property
+    def is_device(self) -> bool:
+        """Tell whether this computer is a device, and not the supervisor."""
+        return self.settings.device is not None
+
+    @property
+    def own_part(self) -> LoadedModel:
+        """Return the part of the model that this computer runs."""
+        if not self.is_device:
+            return self.loaded
+        return LoadedModel(self.share.model, (), self.loaded.text)
 
 
 def read_files(options: ServeOptions) -> RobotFiles:
@@ -117,6 +145,7 @@ def read_files(options: ServeOptions) -> RobotFiles:
         UnreadableFileError: A file cannot be read.
         InvalidModelError: The model is invalid.
         InvalidRobotFileError: The robot file is invalid.
+        MisuseError: The robot file has no such device.
     """
     model = options.model or EXAMPLE
     loaded = load_model(model)
@@ -124,9 +153,20 @@ def read_files(options: ServeOptions) -> RobotFiles:
     if options.robot:
         text = read_text_file(options.robot)
         settings = read_robot_file(text, loaded.model)
-        text = written_out(text)
         loaded = with_signals(loaded, settings.to_signal_settings())
-    return RobotFiles(robot_name(settings.name, model), loaded, settings, text)
+        if options.device is None:
+            text = written_out(text)
+        else:
+            settings = settings.model_copy(update={"device": options.device})
+            text = written_for_device(text, options.device)
+    try:
+        share = share_of(loaded.model, settings)
+    except UnknownDeviceError as error:
+        raise MisuseError(f"{options.robot}: {error}") from error
+    name = robot_name(settings.name, model)
+    if settings.device is not None:
+        name = f"{name}-{settings.device}"
+    return RobotFiles(name, loaded, settings, text, share)
 
 
 async def open_stores(options: ServeOptions, files: RobotFiles, clock: Clock) -> Stores:
@@ -171,94 +211,115 @@ def compose(
     """
     is_real = (options.backend or files.settings.backend) == "ros2"
     make = _with_ros2 if is_real else _with_simulated
-    composition = make(options, files.loaded, files.settings, clock, stores)
-    start_task = files.settings.start_task
+    for left in files.share.left_out:
+        log.warning("left to the supervisor: %s", left.words)
+    composition = make(options, files, clock, stores)
+    start_task = files.share.robot.start_task
     if options.robot is not None and start_task is not None:
         submit_start_task(composition.supervisor, start_task, options.robot)
     return composition
 
 
 def _with_simulated(
-    options: ServeOptions,
-    loaded: LoadedModel,
-    robot: RobotSettings,
-    clock: Clock,
-    stores: Stores,
+    options: ServeOptions, files: RobotFiles, clock: Clock, stores: Stores
 ) -> Composition:
-    """Simulate everything, by default also the signals.
+    """Simulate everything that this computer reaches, by default also the signals.
 
     So a model that is tried without a robot is IDLE, and not in ERROR because of missing readings.
     """
+    share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is not False
     if robot.ros2 != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
     now = clock.now()
     memory = None if stores.journal is None else memory_in(stores.journal.found)
-    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked, memory=memory)
+    simulated = make_simulated_robot(
+        share.local_model, robot, now, mock=mocked and not files.is_device, memory=memory
+    )
     for left in simulated.left_out:
         log.warning("left out: %s", left)
-    _leave_to_sources(robot, simulated.mock, now)
+    _leave_to_others(share, simulated.mock, now)
+    what = simulated.what
+    if files.is_device:
+        what = ("nodes",)
+        simulated.vehicle.set_reporting(False, now)
     backend = SimulatedBackend(simulated, clock)
-    whole, status = _with_sources(loaded, robot, clock, backend, (backend,))
-    onboard = make_onboard(loaded.model, robot, now)
+    place, link = _link_of(options, files, clock)
+    whole, status = _with_sources(files, clock, backend, (backend,), link)
+    onboard = make_onboard(files.loaded.model, files.settings, now)
     stores = replace(stores, memories=memories_of(simulated))
     supervisor = Supervisor(
-        loaded, onboard, clock, whole, backend.readings, simulated.what, stores=stores
+        files.own_part, onboard, clock, whole, backend.readings, what, stores=stores
     )
-    supervisor.sources = status
-    limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
-    return Composition(supervisor, limits, simulated=parts)
+    supervisor.sources, supervisor.link = status, link
+    limits = ServiceLimits.of(robot.limits)
+    parts = None if link else SimulatedParts(onboard, simulated)
+    return Composition(supervisor, limits, simulated=parts, place=place)
 
 
 def _with_ros2(
-    options: ServeOptions,
-    loaded: LoadedModel,
-    robot: RobotSettings,
-    clock: Clock,
-    stores: Stores,
+    options: ServeOptions, files: RobotFiles, clock: Clock, stores: Stores
 ) -> Composition:
     """Reach real nodes; signals are mocked only on request."""
+    share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is True
     now = clock.now()
     graph = _join_graph()
     _require_types(graph, robot.ros2)
-    ros = Ros2Backend(loaded.model, robot, graph, clock)
-    onboard = make_onboard(loaded.model, robot, now)
-    if mocked:
+    ros = Ros2Backend(share.local_model, robot, graph, clock)
+    onboard = make_onboard(files.loaded.model, files.settings, now)
+    place, link = _link_of(options, files, clock)
+    if mocked and not files.is_device:
         signals = MockSignals(now)
-        _leave_to_sources(robot, signals, now)
+        _leave_to_others(share, signals, now)
         mock = MockSource(signals, clock)
-        backend, status = _with_sources(loaded, robot, clock, ros, (ros, mock))
+        backend, status = _with_sources(files, clock, ros, (ros, mock), link)
         supervisor = Supervisor(
-            loaded, onboard, clock, backend, mock.readings, ("signals",), stores=stores
+            files.own_part, onboard, clock, backend, mock.readings, ("signals",), stores=stores
         )
     else:
-        backend, status = _with_sources(loaded, robot, clock, ros, (ros,))
-        supervisor = Supervisor(loaded, onboard, clock, backend, stores=stores)
-    supervisor.sources = status
+        backend, status = _with_sources(files, clock, ros, (ros,), link)
+        supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
+    supervisor.sources, supervisor.link = status, link
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
-    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)
+    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway, place=place)
+
+
+def _link_of(
+    options: ServeOptions, files: RobotFiles, clock: Clock
+) -> tuple[Place | None, SupervisorEnd | DeviceEnd | None]:
+    """Return where this computer is among those of the robot, and its end of the link."""
+    place = place_in(files.settings, options.link)
+    if place is None:
+        return None, None
+    model, robot = files.loaded.model, files.settings
+    return place, make_link(place, model, robot, clock, insecure=options.insecure_link)
 
 
 def _with_sources(
-    loaded: LoadedModel,
-    robot: RobotSettings,
+    files: RobotFiles,
     clock: Clock,
     backend: SimulatedBackend | Ros2Backend,
     signals: tuple[SignalSource, ...],
+    link: SupervisorEnd | DeviceEnd | None,
 ) -> tuple[RobotBackend, tuple[SourceStatus, ...]]:
     """Return a backend with the sources of the robot file, and how those are doing."""
-    sources = make_sources(robot, clock)
+    share = files.share
+    sources = make_sources(share.local_robot, clock)
     if sources is not None:
         signals = (*signals, sources)
-    nodes = dict.fromkeys(loaded.model.nodes, backend)
-    return CompositeRobot(nodes, backend, signals), () if sources is None else sources.status
+    nodes: dict[PartName, NodeBackend] = dict.fromkeys(share.local_model.nodes, backend)
+    if isinstance(link, SupervisorEnd):
+        remote = RemoteNodes(link)
+        nodes = dict.fromkeys(share.model.nodes, remote) | nodes
+    vehicle = None if files.is_device else backend
+    return CompositeRobot(nodes, vehicle, signals), () if sources is None else sources.status
 
 
-def _leave_to_sources(robot: RobotSettings, mock: MockSignals | None, now: Instant) -> None:
-    """Let the mock not publish the signals that have a source: they are real."""
-    for signal in robot.signals.sources:
+def _leave_to_others(share: ComputerShare, mock: MockSignals | None, now: Instant) -> None:
+    """Let the mock not publish the signals that have a source, here or at another computer."""
+    for signal in (*share.local_robot.signals.sources, *share.read_elsewhere):
         if mock is not None and mock.holds(signal):
             mock.set_publishing(signal, publishing=False, now=now)
 

@@ -22,7 +22,6 @@ from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import (
     EXAMPLE,
     Composition,
-    MisuseError,
     RobotFiles,
     ServeOptions,
     compose,
@@ -31,6 +30,7 @@ from api.serving.composition import (
 )
 from api.serving.data_folder import MEMORY
 from api.serving.garbage import Heap
+from api.serving.misuse import MisuseError
 from api.serving.output import Output
 from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
@@ -248,8 +248,11 @@ def greet(
     model = supervisor.model
     source = f"{options.model}" if options.model else "the built-in example"
     counts = f"{counted(len(model.systems), 'system')}, {counted(len(model.nodes), 'node')}"
-    yield f"Pilothouse {installed_version()} supervises {source}: {counts}"
+    does = "supervises" if options.device is None else f"is device {options.device} of"
+    yield f"Pilothouse {installed_version()} {does} {source}: {counts}"
     yield f"  page  {url}/"
+    if composition.place is not None:
+        yield f"  link  {composition.place.words}"
     if access.required:
         yield f"  token needed; the command line sends that in {TOKEN_VARIABLE}"
     curl = f'curl -H "Authorization: Bearer ${TOKEN_VARIABLE}"' if access.required else "curl"
@@ -258,7 +261,7 @@ def greet(
         kind = "systems" if part in model.systems else "nodes"
         yield f"  try   {curl} {url}/{kind}/{part}"
         modes = model.modes_of(part)
-        if modes:
+        if modes and options.device is None:
             body = f'{{"mode": "{modes[-1]}"}}'
             yield f"        {curl} -X POST {url}/{kind}/{part}/mode -d '{body}'"
     if composition.gateway is not None:
@@ -270,7 +273,8 @@ def greet(
         yield f"Simulated: {', '.join(supervisor.simulated)}.{harmless}"
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
-    yield "Ctrl-C stops the service and the vehicle; nodes stay as they are."
+    vehicle = " and the vehicle" if options.device is None else ""
+    yield f"Ctrl-C stops the service{vehicle}; nodes stay as they are."
 
 
 def greeting_json(
@@ -285,6 +289,8 @@ def greeting_json(
         "data": None if journal is None else journal.status().path,
         "token_needed": access.required,
         "simulated": list(composition.supervisor.simulated),
+        "device": options.device,
+        "link": None if composition.place is None else list(composition.place.endpoints.listen),
     }
 
 

@@ -17,6 +17,7 @@ TOPICS = (
     "signals",
     "errors",
     "reactions",
+    "devices",
     "task",
     "vehicle",
     "holds",

@@ -150,6 +150,10 @@ class StreamEncoder:
             yield f'"errors":{robot.errors.text(frame.errors)}'
         if "reactions" in topics and (frame.full or frame.reactions):
             yield f'"reactions":{robot.reactions.text(frame.reactions)}'
+        if "devices" in topics and (frame.full or frame.devices):
+            yield f'"devices":{robot.devices.text(frame.devices)}'
+        if "devices" in topics and frame.lead is not None and frame.lead_changed:
+            yield f'"this_device":{robot.this_device(frame.lead)}'
         if "task" in topics and frame.task_changed:
             yield f'"task":{robot.task(frame.task)}'
         if "vehicle" in topics and frame.vehicle_changed:

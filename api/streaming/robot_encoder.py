@@ -8,10 +8,13 @@ from pydantic_core import to_json
 from api.http.error_text import error_text
 from api.http.part_text import part_text
 from api.http.schemas.base import rfc3339, timestamp
+from api.http.schemas.devices import DeviceJson, ThisDeviceJson
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
 from api.http.schemas.reactions import ReactionJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 from domain.actor import Actor
+from domain.devices.device_view import DeviceView
+from domain.devices.lead_view import LeadView
 from domain.events.event import RecordedEvent
 from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
@@ -53,6 +56,11 @@ class RobotEncoder:
         self.reactions = MemberCache[ReactionView](
             lambda view: ReactionJson.of(view, clock).model_dump_json()
         )
+        self.devices = MemberCache[DeviceView](
+            lambda view: DeviceJson.of(
+                view, supervisor.connection(view.device), clock
+            ).model_dump_json()
+        )
         self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
         self._moments = LatestCache[Instant](lambda at: timestamp(clock, at))
         """An input and what follows from it are at the same moment."""
@@ -83,6 +91,10 @@ class RobotEncoder:
         """Return pose, motion and last command of the vehicle."""
         limits = self._supervisor.core.driving.limits
         return VehicleJson.of(view, limits, self._clock).model_dump_json()
+
+    def this_device(self, view: LeadView) -> str:
+        """Return which device the service runs on, and whose word counts there."""
+        return ThisDeviceJson.of(view, self._clock).model_dump_json()
 
     def holds(self, views: Mapping[str, HoldView]) -> str:
         """Return the holds by owner; encoded again only for another mapping."""

@@ -8,7 +8,7 @@ from domain.changes.admission import ADVISORY
 from domain.changes.guards import INVARIANT
 from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
 from domain.errors import BackendUnavailableError
-from domain.health.built_in_errors import ALL_OF_NODES
+from domain.health.built_in_errors import ALL_OF_NODES, OF_DEVICES
 from domain.health.part_errors import DEVIATES_AFTER
 from domain.health.signals import (
     DECLARED_BIT,
@@ -35,6 +35,8 @@ _OF_CHANGES = {
     "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
     "UNREACHABLE": "A node is unreachable.",
     "UNKNOWN_STATE": "A node has never reported its state.",
+    "DEVICE_LOST": "The device that owns a node is not connected; it is among the `causes` of that "
+    "node's blocker. What is shown of the node is what was known last.",
 }
 _OF_THE_VEHICLE = {
     STILL_MOVING: "The vehicle moves after the time for a stop: 1 s, and 1.25 times the time that "
@@ -80,6 +82,13 @@ _OF_PARTS = {
     "CHECKPOINT_LATE": "A checkpoint did not follow another one within `within_s`.",
     "CHECKPOINT_WRONG_ORDER": "A checkpoint is not one of those that `order` lets come next.",
 }
+_OF_DEVICES = {
+    "LATE": "The device has not been heard for `late_s` of the robot file; it is still commanded.",
+    "LOST": "The device is not connected: it, or what is said to it, has not been heard for "
+    "`lost_s`, or it is not dealt with. All that follows from that is explained by it.",
+    "DEVICE_CONFLICT": "A process that answers by the name of the device is refused, or refuses "
+    "this computer: it is a second one, or has another model.",
+}
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
     "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
@@ -120,6 +129,11 @@ severity. An error puts the robot into ERROR if its severity is `critical` or `f
 128, and is a reason whose `path` is its part. Errors of signals are `critical` unless they say
 otherwise. A node that was not yet heard of since the start is UNREACHABLE; no event tells that."""
 
+_DEVICES = """\
+Each [device](../how-to/spread-a-robot-over-computers.md) of a robot of several computers has these
+errors, with its name in place of that of a part. A device that was not yet connected since the
+start is LOST; no event tells that error."""
+
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
 stays active for at least 0.2 s. All numbers are [settings](settings.md).
@@ -139,6 +153,7 @@ def blockers_page() -> str:
     of_conditions = codes_in("domain/robot_reasons.py") | {CONDITION, UNKNOWN_VALUE}
     require_described("conditions", of_conditions, set(_OF_CONDITIONS))
     require_described("errors of parts", set(ALL_OF_NODES), set(_OF_PARTS))
+    require_described("errors of devices", set(OF_DEVICES), set(_OF_DEVICES))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (
         (code(name), "no" if name in ADVISORY else "yes", about)
@@ -169,6 +184,12 @@ def blockers_page() -> str:
         table(
             ("error", "severity", "when"),
             ((code(name), ALL_OF_NODES[name], about) for name, about in _OF_PARTS.items()),
+        ),
+        "## Errors of devices",
+        _DEVICES,
+        table(
+            ("error", "severity", "when"),
+            ((code(name), OF_DEVICES[name], about) for name, about in _OF_DEVICES.items()),
         ),
         "## Standstill",
         _VEHICLE,

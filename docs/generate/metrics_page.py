@@ -4,6 +4,7 @@ from typing import TypeAlias
 
 from prometheus_client.metrics_core import Metric
 
+from api.http.device_metrics import device_metrics
 from api.http.schemas.simulation import SimulationBody
 from api.robot_app import create_robot_app
 from api.serving.closings import Closings, ClosingsCollector
@@ -11,6 +12,7 @@ from api.simulation.simulation import Simulation
 from api.simulation.simulation_job import robot_for
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import PROJECT, metric_names, require_described
+from domain.computers import ComputerName, Connection
 from service.worker import InlineJobs
 
 _MODEL = PROJECT / "service" / "example" / "actuation.yaml"
@@ -57,8 +59,12 @@ def _collected() -> list[Metric]:
     app = create_robot_app(robot.supervisor, InlineJobs())
     # By the server in a live service.
     app.state.metrics.registry.register(ClosingsCollector(Closings()))
+    arm = ComputerName("arm")
+    connection = Connection(heard_at=0, round_trip=0, lost_share=0.0)
+    of_devices = {each.name: each for each in device_metrics({arm: True}, {arm: connection}, 0)}
     return [
-        family
+        # This robot has no other computer, and so no samples of them.
+        of_devices.get(family.name, family)
         for family in app.state.metrics.registry.collect()
         if not family.name.endswith("_created")
     ]

@@ -15,12 +15,12 @@ from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
 from domain.parts.claims import Claims
-from domain.parts.node_doubts import UNKNOWN_STATE, UNREACHABLE, doubt_of
+from domain.parts.node_doubts import DEVICE_LOST, UNKNOWN_STATE, UNREACHABLE, doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName, StateAndMode
 
-ADVISORY = frozenset({UNREACHABLE, UNKNOWN_STATE})
+ADVISORY = frozenset({UNREACHABLE, UNKNOWN_STATE, DEVICE_LOST})
 """Shown, but no reason to reject: an absent node may reappear before the deadline."""
 
 MAX_BLOCKERS = 100

@@ -17,7 +17,7 @@ class DeviceView:
     since: Instant
     """When it came to be so."""
     reason: str
-    """Why it is not connected, in words; empty: it is, or was never seen."""
+    """Why it is late or not connected, as a sentence; empty: it is connected, or nobody said."""
     parts: tuple[PartName, ...]
     """Nodes that it owns, in the order of the model file."""
     offline: OfflineSettings

@@ -1,7 +1,7 @@
 """The devices of the robot as a concern of the supervisor: who is there, and what follows if not.
 
 The state machines of `domain.link` decide how a connection is. They report a device that is lost
-before its nodes, which they then report as unreachable.
+before its nodes, which are then unreachable, and one that is connected after its nodes.
 """
 
 from collections.abc import Container, Mapping
@@ -19,7 +19,7 @@ from domain.events.devices import (
     DeviceLost,
     DeviceReported,
 )
-from domain.events.event import Event, because
+from domain.events.event import Event
 from domain.findings import Blocker
 from domain.health.built_in_errors import DEVICE_CONFLICT, LATE, LOST
 from domain.health.error_list import ErrorList, Found
@@ -175,16 +175,16 @@ class Devices(Concern):
     def _why(self, name: ComputerName) -> str:
         """Return why a device is not connected, as a sentence."""
         view = self._views[name]
-        if view.state is DeviceState.NEVER_SEEN:
-            return f"device {name} was never heard of"
-        return because(f"device {name} is not connected", view.reason)
+        never = f"device {name} was never heard of"
+        is_never = view.state is DeviceState.NEVER_SEEN
+        return view.reason or (never if is_never else f"device {name} is not connected")
 
     def _cut_off(self, name: ComputerName) -> None:
         """Say why nothing is heard of the nodes of a device, or that it is connected."""
         view = self._views[name]
         why = None
         if not view.is_connected:
-            values = "" if name in self._unheard else "; the last values of its parts are old"
+            values = "" if name in self._unheard else ", its last values are old"
             why = Blocker(
                 DEVICE_LOST, f"{self._why(name)}{values}", (), since=view.since, refuses=False
             )
@@ -193,10 +193,10 @@ class Devices(Concern):
     def _judge(self, name: ComputerName, now: Instant) -> None:
         """Raise and clear the errors of a device."""
         view = self._views[name]
-        late = because(f"device {name} is late", view.reason)
+        late = view.reason or f"device {name} is late"
         self._set(name, LATE, late if view.state is DeviceState.LATE else "", now)
         is_conflict = view.state is DeviceState.CONFLICT
-        self._set(name, DEVICE_CONFLICT, view.refused or (view.reason if is_conflict else ""), now)
+        self._set(name, DEVICE_CONFLICT, self._why(name) if is_conflict else view.refused, now)
         lost = _key(name, LOST)
         if view.is_connected and name in self._unheard:
             self._unheard.discard(name)
@@ -241,18 +241,18 @@ def _never_seen(settings: DeviceSettings, start: Instant) -> DeviceView:
 
 def _told(before: DeviceView, after: DeviceView) -> Event:
     """Return the event that describes a change of a device."""
-    name = after.device
-    known, new = before.incarnation, after.incarnation
-    is_other_run = known is not None and new != known
-    if after.state is DeviceState.CONNECTED and (
-        before.state is not DeviceState.CONNECTED or is_other_run
-    ):
+    name, state = after.device, after.state
+    known = before.incarnation
+    is_other_run = known is not None and after.incarnation != known
+    has_moved = state is not before.state
+    is_other_reason = after.reason != before.reason
+    if state is DeviceState.CONNECTED and (has_moved or is_other_run):
         return DeviceConnected(name, before.state, is_other_run)
-    if after.state is DeviceState.CONFLICT and before.state is not DeviceState.CONFLICT:
-        return DeviceConflict(name, after.refused or after.reason)
-    if after.state is DeviceState.LATE and before.state is not DeviceState.LATE:
+    if state is DeviceState.LATE and has_moved:
         return DeviceLate(name, after.reason)
-    if not after.is_connected and before.state is not after.state:
+    if state is DeviceState.CONFLICT and (has_moved or is_other_reason):
+        return DeviceConflict(name, after.reason)
+    if not after.is_connected and (has_moved or is_other_reason):
         return DeviceLost(name, after.reason)
     if after.refused and after.refused != before.refused:
         return DeviceConflict(name, after.refused)

@@ -38,9 +38,10 @@ class DeviceLate(Event):
 
     device: ComputerName
     reason: str
+    """A sentence."""
 
     def _words(self) -> str:
-        return because(f"device {self.device} is late", self.reason)
+        return self.reason or f"device {self.device} is late"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +53,15 @@ class DeviceLost(Event):
 
     device: ComputerName
     reason: str
+    """A sentence."""
 
     def _words(self) -> str:
-        return because(f"device {self.device} is not connected", self.reason)
+        return self.reason or f"device {self.device} is not connected"
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceConflict(Event):
-    """A process that answers by the name of a device is refused."""
+    """A process that answers by the name of a device is not dealt with, and why."""
 
     kind = "device.conflict"
     is_input = True
@@ -68,7 +70,7 @@ class DeviceConflict(Event):
     reason: str
 
     def _words(self) -> str:
-        return because(f"a process that calls itself device {self.device} is refused", self.reason)
+        return because(f"conflict about device {self.device}", self.reason)
 
 
 @dataclass(frozen=True, slots=True)

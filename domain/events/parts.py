@@ -52,10 +52,19 @@ class NodeReachable(Event):
     """A node is reachable, for the first time or again."""
 
     kind = "node.reachable"
+    hidden = frozenset({"with_device"})
+
     node: PartName
+    with_device: bool = field(default=False, kw_only=True)
+    """Its device is about to be connected."""
 
     def _words(self) -> str:
         return f"{self.node} is reachable"
+
+    @property
+    def notable(self) -> bool:
+        """Tell whether no event of its device says so as well."""
+        return not self.with_device
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +72,19 @@ class NodeUnreachable(Event):
     """A node is no longer reachable."""
 
     kind = "node.unreachable"
+    hidden = frozenset({"with_device"})
+
     node: PartName
+    with_device: bool = field(default=False, kw_only=True)
+    """Its device is not connected."""
 
     def _words(self) -> str:
         return f"{self.node} is unreachable"
+
+    @property
+    def notable(self) -> bool:
+        """Tell whether no event of its device says so as well."""
+        return not self.with_device
 
 
 @dataclass(frozen=True, slots=True)

@@ -169,6 +169,15 @@ class ModeInference:
             return actual.state_and_mode
         return StateAndMode(actual.state)
 
+    def last_known(self, node: PartName) -> StateAndMode | None:
+        """Return what was known last of a node that is unreachable; None: it is not, or nothing."""
+        facts = self._facts[node]
+        if facts.reachable is not False or facts.state is None:
+            return None
+        if facts.state is not LifecycleState.ACTIVE:
+            return StateAndMode(facts.state)
+        return StateAndMode(facts.state, facts.mode or self._matching_mode(node))
+
     def converged(self, part: PartName) -> bool:
         """Tell whether a part is in its target state and mode, or has no target, and so its parts.
 

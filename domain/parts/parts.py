@@ -328,7 +328,9 @@ class Parts(Concern):
     def _note_reachable(self, node: PartName, *, reachable: bool) -> None:
         if self._reachability.note(node, reachable=reachable):
             self.touch((node, *self.model.ancestors[node]))
-            self._outbox.emit(NodeReachable(node) if reachable else NodeUnreachable(node))
+            with_device = self.facts[node].cut_off is not None
+            told = NodeReachable if reachable else NodeUnreachable
+            self._outbox.emit(told(node, with_device=with_device))
 
     def _look_late(self, parts: Iterable[PartName], now: Instant) -> None:
         """Tell states and deviations of those parts whose turn has not come yet."""
@@ -395,6 +397,7 @@ class Parts(Concern):
             reachable=self._reachability.reaches(part),
             change=self.change_of(part),
             device=self._devices.get(part),
+            last_known=None if system else self.inference.last_known(part),
         )
 
 

@@ -1,7 +1,7 @@
 """How the connections to the other computers are doing, for clients and metrics."""
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Mapping
 
 from domain.computers import ComputerName, Connection, Incarnation
 from domain.link.messages import Beat, Message
@@ -18,15 +18,14 @@ _MOST_ECHOES = 64
 class LinkStatus:
     """Measures the connections to the other computers by the messages that pass."""
 
-    def __init__(self, computers: Iterable[ComputerName], beat: Duration) -> None:
+    def __init__(self, beats: Mapping[ComputerName, Duration]) -> None:
         """Begin with nothing heard.
 
         Args:
-            computers: The other computers of the robot; messages of others are not measured.
-            beat: Time between two beats of one of them.
+            beats: The other computers of the robot, each with the time between two of its beats;
+                messages of others are not measured.
         """
-        self._beat = beat
-        self._measured = {name: _Measured() for name in computers}
+        self._measured = {name: _Measured(beat) for name, beat in beats.items()}
 
     def of(self, computer: ComputerName, now: Instant) -> Connection:
         """Return how the connection to a computer is doing."""
@@ -36,7 +35,7 @@ class LinkStatus:
         return Connection(
             measured.heard_at,
             measured.round_trip,
-            measured.lost_share(now, self._beat),
+            measured.lost_share(now),
             measured.unreadable,
         )
 
@@ -62,7 +61,8 @@ class LinkStatus:
 class _Measured:
     """What passed between this computer and another one."""
 
-    def __init__(self) -> None:
+    def __init__(self, beat: Duration) -> None:
+        self._beat = beat
         self.heard_at: Instant | None = None
         self.round_trip: Duration | None = None
         self.unreadable = 0
@@ -84,10 +84,10 @@ class _Measured:
             if incarnation == beat.heard and seq == beat.heard_seq:
                 self.round_trip = now - at
 
-    def lost_share(self, now: Instant, beat: Duration) -> float | None:
+    def lost_share(self, now: Instant) -> float | None:
         if self.heard_at is None:
             return None
         begun = max(now - WINDOW, self._since)
-        expected = (now - begun) // beat
+        expected = (now - begun) // self._beat
         came = sum(at > begun for at in self._beats)
         return max(0.0, 1 - came / expected) if expected else 0.0

@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Literal
 
@@ -25,6 +26,7 @@ from tests.browser.robots import (
     troubled_robot,
 )
 from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, serving
+from tests.support.monitor import device, this_device
 from tests.support.shared import PROJECT
 
 SCREENS = {"desktop": (1440, 900), "phone": (360, 640)}
@@ -358,6 +360,50 @@ def still_moving(frame: dict[str, Any]) -> None:
         frame["vehicle"]["speed_mps"] = 1.1
 
 
+def on_devices(lost: bool, stop: bool = False) -> Act:
+    """Return what shows the example robot with a device for each node; one of them may be lost."""
+
+    def act(page: Page, service: Service) -> None:
+        post(service, "/systems/actuation/mode?wait=15", {"mode": "PERFORMANCE"})
+        if stop:
+            stopped(page, service)
+        items = [*service.request("GET", "/systems")["items"]]
+        items += service.request("GET", "/nodes")["items"]
+        page.locator("h1").filter(has_text=re.compile("IDLE|ERROR")).wait_for()
+        told = told_of_devices({item["name"]: item for item in items}, lost=lost)
+        patched(lambda frame: frame.update(told))(page, service)
+        show_part(page, "manipulator")
+        page.wait_for_timeout(2500)
+
+    return act
+
+
+def told_of_devices(parts: dict[str, Any], *, lost: bool) -> dict[str, Any]:
+    """Return members of frames."""
+    parts["drive_base"]["device"], parts["manipulator"]["device"] = "base", "arm"
+    devices = {"base": device("base"), "arm": device("arm", "lost" if lost else "connected")}
+    for name, node in (("base", "drive_base"), ("arm", "manipulator")):
+        offline = {"after_s": 2.0, "target": {node: "inactive"}, "reactions": name == "base"}
+        devices[name] = {**devices[name], "parts": [node], "offline": offline}
+    if lost:
+        at = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        why = "nothing was heard for 1.5 s"
+        devices["arm"] = {**devices["arm"], "since_at": at, "heard_at": at, "reason": why}
+        arm = parts["manipulator"]
+        arm |= {"last_known": {"state": "active", "mode": "STRONG"}, "reachable": False}
+        for name, reason in (("manipulator", None), ("actuation", "manipulator is unreachable")):
+            gone = {"state": "unknown", "mode": None, "reason": reason, "undecidable": True}
+            parts[name]["actual"] |= gone
+            parts[name] |= {"converged": False, "deviation_since_at": at}
+            parts[name]["deviation_reason"] = "manipulator is unreachable"
+    return {"parts": parts, "devices": devices}
+
+
+def on_a_device(lead: str) -> Act:
+    """Return what shows the page of a device."""
+    return patched(lambda frame: frame.update(this_device=this_device("arm", lead)))
+
+
 def earlier_events(page: Page, service: Service) -> None:
     """The end of the list after two restarts, the earlier of them after a kill."""
     del service
@@ -442,6 +488,11 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "parts_300": ("crowded", parts_300),
     "attention": ("crowded", parts_attention),
     "parts_filtered": ("crowded", parts_filtered),
+    "devices": ("example", on_devices(lost=False)),
+    "device_lost": ("example", on_devices(lost=True)),
+    "device_lost_stopped": ("example", on_devices(lost=True, stop=True)),
+    "device_itself": ("example", on_a_device("supervisor")),
+    "device_cut_off": ("example", on_a_device("device")),
     "earlier_events": ("example", earlier_events),
     "timeline": ("example", timeline),
     "timeline_pinned": ("example", timeline_pinned),

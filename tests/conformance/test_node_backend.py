@@ -13,6 +13,7 @@ from typing import Protocol, TypeAlias
 import pytest
 
 from domain.commands import AskFacts, AskParameters, AskTransition
+from domain.computers import SUPERVISOR, ComputerName
 from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
@@ -21,13 +22,18 @@ from domain.simulation.robot import SimulatedRobot
 from domain.state_and_mode import PartName
 from service.clock import MonotonicClock
 from service.files.robot_file import RobotSettings
+from service.link.making import make_end
+from service.link.memory import MemoryNetwork
+from service.link.place import place_in
 from service.ports import BackendMessage, NodeBackend
 from service.ros.backend.backend import Ros2Backend
 from service.simulation.simulated import SimulatedBackend
 from tests.ros2.support.isolation import isolate
 from tests.ros2.support.nodes_process import NodesProcess
+from tests.support.linked_robot import Running, make_computer, names_of, settings_of
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ARM, BASE, actuation_model
+from tests.support.offset_clock import OffsetClock
 from tests.support.ros_graph import FakeGraph
 from tests.support.ros_nodes import FakeNode
 
@@ -53,7 +59,7 @@ class BackendUnderTest(Protocol):
     def recover(self, node: PartName) -> None:
         """Let a node speak again, or start it again if its process ended."""
 
-    def end(self) -> None:
+    async def end(self) -> None:
         """End what the nodes run in."""
 
 
@@ -78,7 +84,7 @@ class Simulated:
     def recover(self, node: PartName) -> None:
         self._simulated.set_fault(node, None)
 
-    def end(self) -> None:
+    async def end(self) -> None:
         pass
 
 
@@ -112,7 +118,7 @@ class InMemory:
         else:
             self._nodes[node].start()
 
-    def end(self) -> None:
+    async def end(self) -> None:
         pass
 
 
@@ -150,12 +156,53 @@ class RealNodes:
         else:
             self._processes[node].start()
 
-    def end(self) -> None:
+    async def end(self) -> None:
         for process in self._processes.values():
             process.kill()
 
 
-UNDER_TEST: list[object] = [Simulated, InMemory, pytest.param(RealNodes, marks=pytest.mark.ros2)]
+class Remote:
+    """Simulated nodes on two other computers, whose clocks are wrong, in virtual time."""
+
+    def __init__(self) -> None:
+        self._clock = ManualClock()
+        self._devices = Running()
+        network = MemoryNetwork(names_of(), self._clock)
+        model = actuation_model()
+        link = network.link(SUPERVISOR)
+        robot = settings_of(SUPERVISOR)
+        place = place_in(robot)
+        assert place is not None
+        self.backend: NodeBackend = make_end(place, model, robot, link, self._clock)
+        self._nodes: dict[PartName, SimulatedBackend] = {}
+        for name, node, ahead_s in (("base", BASE, 300.0), ("arm", ARM, -300.0)):
+            clock = OffsetClock(self._clock, ahead_s)
+            link = network.link(ComputerName(name))
+            device, self._nodes[node] = make_computer(model, settings_of(name), link, clock)
+            self._devices.start(name, device)
+
+    async def pass_time(self, by_s: float) -> None:
+        await self._clock.advance(by_s)
+
+    def silence(self, node: PartName) -> None:
+        self._nodes[node].set_fault(node, Fault.SILENT)
+
+    def kill(self, node: PartName) -> None:
+        self._nodes[node].set_fault(node, Fault.DIE)
+
+    def recover(self, node: PartName) -> None:
+        self._nodes[node].set_fault(node, None)
+
+    async def end(self) -> None:
+        await self._devices.stop()
+
+
+UNDER_TEST: list[object] = [
+    Simulated,
+    InMemory,
+    Remote,
+    pytest.param(RealNodes, marks=pytest.mark.ros2),
+]
 
 
 class Robot:
@@ -235,7 +282,7 @@ _STEP_S = 0.05
 async def under_test(request: pytest.FixtureRequest) -> AsyncIterator[BackendUnderTest]:
     made: BackendUnderTest = request.param()
     yield made
-    made.end()
+    await made.end()
 
 
 @pytest.fixture
@@ -451,6 +498,8 @@ async def test_it_runs_until_it_is_cancelled_and_leaves_no_task(robot: Robot) ->
     await asyncio.wait([robot.running])
 
     assert robot.running.cancelled()
+    # What nodes run in may have tasks of its own.
+    await robot.under_test.end()
     assert asyncio.all_tasks() <= before - {robot.running}
 
 

@@ -206,6 +206,7 @@ _HEALTH = (
         body={"value": 30.0, "publishing": True},
         then_s=1,
     ),
+    Asked("GET /devices", "A robot of one computer"),
     Asked("GET /monitors", "How fast the battery runs down"),
     Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
     Asked("GET /errors", "Those that are on", query={"active": "true"}),

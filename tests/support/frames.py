@@ -5,6 +5,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from domain.actor import Actor
+from domain.computers import ComputerName, DeviceState
+from domain.devices.device_view import DeviceView
+from domain.devices.lead_view import LeadView
+from domain.devices.settings import OfflineSettings
 from domain.events.event import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
 from domain.reactions.reaction_view import ReactionView
@@ -50,6 +54,24 @@ def part_view(name: str, mode: str = "__DEFAULT__") -> PartView:
         deviation_reason=None,
         reachable=True,
         change=None,
+    )
+
+
+def device_view(name: str, state: DeviceState = DeviceState.CONNECTED) -> DeviceView:
+    """Show a device that owns the node `drive_base`."""
+    return DeviceView(
+        device=ComputerName(name),
+        state=state,
+        since=seconds(1),
+        reason="",
+        parts=(PartName("drive_base"),),
+        offline=OfflineSettings(),
+        incarnation=None,
+        session=None,
+        version=None,
+        autonomous=False,
+        refused="",
+        stops=(),
     )
 
 
@@ -105,6 +127,8 @@ def frame(
     holds_changed: bool = False,
     emergency_stop: EmergencyStopView = RELEASED,
     emergency_stop_changed: bool = False,
+    devices: Sequence[DeviceView] = (),
+    lead: LeadView | None = None,
 ) -> Frame:
     """Make frame number `seq`, of the tick at `seq` * 50 ms."""
     return Frame(
@@ -115,6 +139,9 @@ def frame(
         signals={view.signal: view for view in signals},
         errors={view.key.name: view for view in errors},
         reactions={view.name: view for view in reactions},
+        devices={view.device: view for view in devices},
+        lead=lead,
+        lead_changed=full or lead is not None,
         task=task,
         task_changed=full or task_changed,
         vehicle=vehicle,

@@ -108,10 +108,17 @@ def device(name: str, state: str = "connected", **more: object) -> Json:
     }
 
 
-def this_device(name: str, lead: str = "following", **more: object) -> Json:
+def this_device(name: str, lead: str = "supervisor", **more: object) -> Json:
     """Return what the service of a device tells of itself."""
-    offline = device(name)["offline"]
-    return {"device": name, "lead": lead, "reason": "", "since_at": AT, "offline": offline, **more}
+    return {
+        "device": name,
+        "lead": lead,
+        "supervisor": "connected" if lead == "supervisor" else "lost",
+        "since_at": AT,
+        "reason": "",
+        "when_cut_off": "after 2 s: drive_base to inactive",
+        **more,
+    }
 
 
 def task(status: str = "RUNNING", **more: object) -> Json:

@@ -99,6 +99,21 @@ def service(*arguments: str, command: tuple[str, ...] = COMMAND) -> Iterator[Ser
 
 
 @contextmanager
+def device(
+    name: str, *arguments: str, command: tuple[str, ...] = COMMAND
+) -> Iterator[ServiceProcess]:
+    """Run `pilothouse device` on a free port as long as the context lasts.
+
+    Args:
+        name: Of the device.
+        arguments: Model, and more options.
+        command: What to run instead of `pilothouse`.
+    """
+    with _serving(*command, "device", name, "--port", "0", *arguments) as process:
+        yield process
+
+
+@contextmanager
 def replay_page(folder: Path, *arguments: str) -> Iterator[ServiceProcess]:
     """Run `pilothouse replay --page` on a free port as long as the context lasts.
 

@@ -30,6 +30,7 @@ def members(
     parts: tuple[Json, ...] = (),
     stop: Json | None = None,
     vehicle: Json | None = None,
+    devices: tuple[Json, ...] = (),
 ) -> dict[str, Any]:
     """Return the members of a complete frame."""
     return {
@@ -40,6 +41,7 @@ def members(
         "signals": {},
         "emergency_stop": stop or told.stop(),
         "vehicle": vehicle or moving(0.0),
+        "devices": told.named("device", *devices),
     }
 
 
@@ -94,6 +96,17 @@ CASES = (
         "task t1 at 42 %, held by gate (the gate is shut), operator and loading",
         members=members(
             paused(), told.task("PAUSED"), (GATE, told.hold("operator"), told.hold("loading"))
+        ),
+    ),
+    Case(
+        "a lost device stands for its parts",
+        "IDLE",
+        "attention",
+        "device arm is lost; no task",
+        ("drive_base is inactive, target active.FAST",),
+        members=members(
+            parts=(SYSTEM, OFF, {**DEAD, "device": "arm"}),
+            devices=(told.device("arm", "lost"), told.device("base", "late")),
         ),
     ),
     Case(

@@ -28,7 +28,7 @@ _TITLES = ("device", "state", "heard", "parts", "when cut off", "stops")
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
-    add_format(parser, "json: {items, this}")
+    add_format(parser, "json: {items}, of a device {items, this}")
     add_url(parser)
 
 
@@ -56,7 +56,7 @@ def list_devices(answer: Json, how: str, say: Callable[[str], None]) -> Outcome:
     else:
         for line in _lines(items, this):
             say(line)
-    is_cut_off = this is not None and this["lead"] != "following"
+    is_cut_off = this is not None and this["lead"] != "supervisor"
     is_whole = all(item["state"] == "connected" for item in items) and not is_cut_off
     return Outcome.SUCCEEDED if is_whole else Outcome.FAILED
 
@@ -65,7 +65,7 @@ def _lines(items: Sequence[Json], this: Json | None) -> Iterator[str]:
     if this is not None:
         why = f" ({this['reason']})" if this["reason"] else ""
         yield visible(f"{own_words(this)}{why}")
-        yield visible(f"when cut off: {_offline(this['offline'])}")
+        yield visible(f"when cut off: {this['when_cut_off']}")
         return
     if not items:
         yield "no devices: the robot has one computer"

@@ -178,9 +178,8 @@ def _away_words(view: View, part: Json) -> str:
     heard = heard_last(view.robot.devices.get(part.get("device") or ""))
     if heard is None:
         return "unreachable"
-    known = part.get("last_known")
-    was = f"was {words.label(known)}" if known else "unreachable"
-    return f"{was} {words.duration(view.known_for_s(heard))} ago"
+    known, age = part.get("last_known"), words.duration(view.known_for_s(heard))
+    return f"was {words.label(known)} {age} ago" if known else f"unreachable for {age}"
 
 
 def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None) -> list[Text]:

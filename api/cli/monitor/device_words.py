@@ -11,10 +11,10 @@ Json: TypeAlias = Mapping[str, Any]
 _WORDS = {"lost": "lost", "conflict": "in conflict", "never_seen": "not seen yet", "late": "late"}
 """What each connection is called that is not as it should be, the worst first."""
 _LEADS = {
-    "never_connected": "no supervisor yet",
-    "following": "the supervisor's word counts",
+    "nobody": "no supervisor yet",
+    "supervisor": "the supervisor's word counts",
     "cut_off": "cut off",
-    "acting_alone": "acts alone",
+    "device": "acts alone",
 }
 _NAMED = 3
 
@@ -57,16 +57,35 @@ def not_stopped_words(devices: Mapping[str, Json]) -> str:
     return f"{_named(names)} {verb} not known to be stopped"
 
 
+def stop_places(stop: Json) -> str:
+    """Return where the emergency stop is engaged; empty: only at the service that says so.
+
+    Args:
+        stop: The emergency stop; an older service does not say where it is.
+    """
+    places = list(dict.fromkeys(each["device"] for each in stop.get("stops", ())))
+    if all(device is None for device in places):
+        return ""
+    silent = stop["not_heard"]
+    return _named([_place(device) + " (not heard)" * (device in silent) for device in places])
+
+
 def own_words(this: Json) -> str:
     """Return which device the service runs on, and whose word counts there."""
-    return f"device {this['device']}: {_LEADS.get(this['lead'], this['lead'])}"
+    return f"device {this['device']}: {_LEADS[this['lead']]}"
 
 
 def heard_last(device: Json | None) -> str | None:
     """Return when a device that is away was heard last; None: it is heard, or never was."""
     if device is None or not is_away(device) or device["state"] == "never_seen":
         return None
-    return device["heard_at"] or device["since_at"]
+    return str(device["heard_at"] or device["since_at"])
+
+
+def _place(device: str | None) -> str:
+    if device is None:
+        return "here"
+    return "at the supervisor" if device == "supervisor" else f"at device {device}"
 
 
 def _named(names: Sequence[str]) -> str:

@@ -112,6 +112,12 @@ class PartJson(Json):
     )
     reachable: bool = Field(description="For a system: whether all its nodes are reachable")
     change: str | None = Field(description="Id of the change that drives this part")
+    device: str | None = Field(
+        description="Computer that owns this node; null: this one, or it is a system"
+    )
+    last_known: StateAndModeJson | None = Field(
+        description="Where an unreachable node was when it was heard last; null: nothing is known"
+    )
 
     @classmethod
     def of(cls, view: PartView, clock: Clock) -> "PartJson":
@@ -129,6 +135,8 @@ class PartJson(Json):
             deviation_reason=view.deviation_reason,
             reachable=view.reachable,
             change=view.change,
+            device=view.device,
+            last_known=StateAndModeJson.of(view.last_known) if view.last_known else None,
         )
 
 

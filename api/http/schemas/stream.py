@@ -6,6 +6,7 @@ from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from api.http.schemas.base import Body, Json, Timestamp, left_out
+from api.http.schemas.devices import DeviceJson, ThisDeviceJson
 from api.http.schemas.errors import ErrorJson
 from api.http.schemas.health import (
     EmergencyStopJson,
@@ -93,6 +94,22 @@ class StateFrame(Json):
         description=(
             "Reactions that have changed, by name, such as `vehicle.LIMP`; all of them in a full"
             " frame"
+        ),
+        json_schema_extra=left_out,
+    )
+    devices: dict[str, DeviceJson] | SkipJsonSchema[None] = Field(
+        default=None,
+        description=(
+            "The other computers of the robot that have changed; all of them in a full frame; left"
+            " out: none has changed, or the robot has one computer"
+        ),
+        json_schema_extra=left_out,
+    )
+    this_device: ThisDeviceJson | SkipJsonSchema[None] = Field(
+        default=None,
+        description=(
+            "The device that the service runs on, and whose word counts there; left out: as it was,"
+            " or it is no device"
         ),
         json_schema_extra=left_out,
     )

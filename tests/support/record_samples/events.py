@@ -50,8 +50,6 @@ from domain.events.health import (
     EmergencyStopReleased,
     EmergencyStopStandstill,
     ErrorAcknowledged,
-    ErrorCleared,
-    ErrorRaised,
     ErrorReported,
     PeerStopEngaged,
     PeerStopReleased,
@@ -64,6 +62,16 @@ from domain.events.health import (
     SignalSkewed,
     StopReleaseAsked,
     SystemStateChanged,
+)
+from domain.events.lead import (
+    DeviceActsAlone,
+    DeviceFollowsAgain,
+    DeviceTargetLeft,
+    OrderRefused,
+    OrderTaken,
+    SupervisorConnected,
+    SupervisorLate,
+    SupervisorLost,
 )
 from domain.events.parts import (
     CheckpointReached,
@@ -103,6 +111,8 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.reaction_terms import Action, Arm
 from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
+from tests.support.record_samples.device_events import DEVICE_EVENTS
+from tests.support.record_samples.error_events import ERROR_EVENTS
 from tests.support.record_samples.pieces import PARAMETERS
 
 EVENTS: Mapping[str, tuple[object, ...]] = {
@@ -182,6 +192,25 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         ),
     ),
     "emergency_stop.standstill": (EmergencyStopStandstill(),),
+    "device.acts_alone": (DeviceActsAlone(device="arm", does='Größe ≤ 3 — "gripper\\jam"'),),
+    "device.follows_again": (DeviceFollowsAgain(device="arm"),),
+    "device.target_left": (
+        DeviceTargetLeft(
+            device="arm",
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "order.refused": (
+        OrderRefused(
+            node=PartName("left/arm"), action="activate", reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "order.taken": (OrderTaken(node=PartName("left/arm"), action="set_parameters"),),
+    "supervisor.connected": (SupervisorConnected(device="arm"),),
+    "supervisor.late": (SupervisorLate(device="arm", reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "supervisor.lost": (SupervisorLost(device="arm", reason='Größe ≤ 3 — "gripper\\jam"'),),
     "error.acknowledged": (
         ErrorAcknowledged(error="LOW_BATTERY"),
         ErrorAcknowledged(error="DEVIATES", part=PartName("arm")),
@@ -198,37 +227,8 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         ErrorUnshelved(error="LOW_BATTERY"),
         ErrorUnshelved(error="DEVIATES", part=PartName("arm")),
     ),
-    "error.cleared": (
-        ErrorCleared(error="LOW_BATTERY"),
-        ErrorCleared(error="DEVIATES", part=PartName("arm")),
-        ErrorCleared(error="SILENT", part=PartName("left/arm"), root_cause=False),
-        ErrorCleared(error="SILENT", part=PartName("left/arm"), silenced=True),
-    ),
-    "error.raised": (
-        ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
-        ErrorRaised(
-            error="DEVIATES",
-            message="arm is inactive, target active.FAST",
-            value="inactive",
-            threshold="active.FAST",
-            part=PartName("arm"),
-        ),
-        ErrorRaised(
-            error="SILENT",
-            message="not part('left/arm').reachable",
-            value=None,
-            threshold=None,
-            part=PartName("left/arm"),
-            root_cause=False,
-        ),
-        ErrorRaised(
-            error="LOW_BATTERY",
-            message="12.5 % < 20 %",
-            value=12.5,
-            threshold=12.5,
-            silenced=True,
-        ),
-    ),
+    **DEVICE_EVENTS,
+    **ERROR_EVENTS,
     "error.reported": (
         ErrorReported(
             part=PartName("left/arm"),
@@ -254,7 +254,10 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
-    "node.reachable": (NodeReachable(node=PartName("left/arm")),),
+    "node.reachable": (
+        NodeReachable(node=PartName("left/arm")),
+        NodeReachable(node=PartName("left/arm"), with_device=True),
+    ),
     "node.reported": (
         NodeReported(
             node=PartName("left/arm"),
@@ -273,7 +276,10 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
         ),
     ),
-    "node.unreachable": (NodeUnreachable(node=PartName("left/arm")),),
+    "node.unreachable": (
+        NodeUnreachable(node=PartName("left/arm")),
+        NodeUnreachable(node=PartName("left/arm"), with_device=True),
+    ),
     "part.actual_changed": (
         PartActualChanged(
             part=PartName("arm"),

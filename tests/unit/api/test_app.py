@@ -64,6 +64,7 @@ CONTRACT = {
     "/reactions": {"get"},
     "/analysis": {"get"},
     "/emergency_stop": {"get", "put"},
+    "/devices": {"get"},
     "/mock": {"get"},
     "/mock/{signal}": {"patch"},
     "/tasks": {"get", "post"},

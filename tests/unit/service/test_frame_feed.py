@@ -2,6 +2,7 @@ import hypothesis.strategies as st
 from hypothesis import given
 
 from domain.actor import Actor
+from domain.computers import DeviceState
 from domain.inputs import (
     CancelTaskRequest,
     EmergencyStopRequest,
@@ -12,7 +13,7 @@ from domain.inputs import (
 from domain.snapshot import ErrorState, PartView, TaskPhase
 from domain.state_and_mode import PartName
 from service.frame_feed import ENDED_KEPT, LARGE, Frame, FrameFeed, FrameReader
-from tests.support.frames import error_view, frame, part_view, signal_view
+from tests.support.frames import device_view, error_view, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.paths import straight
@@ -77,6 +78,21 @@ def test_a_slow_reader_gets_the_newest_frame_whole_and_is_told_how_many_it_misse
 
     assert (newest.seq, newest.full, skipped) == (4, True, 2)
     assert newest.parts == {"arm": moved, "drive_base": DRIVE}
+
+
+def test_a_reader_that_missed_frames_gets_all_devices_as_they_are_now() -> None:
+    feed = FrameFeed()
+    arm, base = device_view("arm"), device_view("base")
+    feed.publish(frame(1, devices=[arm, base], full=True))
+    reader = FrameReader(feed)
+    reader.take()
+    lost = device_view("arm", DeviceState.LOST)
+    feed.publish(frame(2, devices=[lost]))
+    feed.publish(frame(3))
+
+    newest, _ = taken(reader)
+
+    assert newest.devices == {"arm": lost, "base": base}
 
 
 def test_a_reader_that_begins_anew_gets_everything_also_of_the_frame_that_it_has() -> None:

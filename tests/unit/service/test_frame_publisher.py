@@ -14,6 +14,7 @@ from tests.support.big_model import FAST, big_model
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ACTUATION, BASE
+from tests.support.robot_with_devices import ARM_COMPUTER, BASE_COMPUTER, device_robot, status
 
 
 @pytest.fixture
@@ -160,3 +161,18 @@ async def test_a_value_that_stays_is_told_twice_a_second_and_one_that_changes_at
     assert held.received_at is not None
     assert now.received_at is not None
     assert now.received_at - held.received_at <= seconds(0.6)
+
+
+async def test_devices_are_in_the_first_frame_and_then_in_those_after_a_change() -> None:
+    async with device_robot() as (robot, _):
+        first = robot.supervisor.frames.newest
+        assert first is not None
+        assert list(first.devices) == [BASE_COMPUTER, ARM_COMPUTER]
+        recorded = Recorded(robot.supervisor)
+        with robot.supervisor.frames.watch(recorded):
+            await robot.pass_time(0.1)
+            robot.supervisor.submit(status(ARM_COMPUTER))
+            await robot.pass_time(0.1)
+
+    told = [list(frame.devices) for frame in recorded.frames]
+    assert [names for names in told if names] == [[ARM_COMPUTER]]

@@ -5,7 +5,9 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.actor import NOBODY
+from domain.computers import ComputerName
 from domain.events.changes import ChangeRequested, NodeRestoring
+from domain.events.devices import DeviceLost
 from domain.events.event import RecordedEvent
 from domain.events.parts import NodeUnreachable
 from domain.state_and_mode import PartName
@@ -59,3 +61,15 @@ async def test_of_many_events_at_once_none_is_missed(
     assert caplog.messages == [
         f"node.unreachable: n{number} is unreachable" for number in range(1, 251)
     ]
+
+
+async def test_of_what_is_lost_with_a_device_only_that_is_logged(
+    events: EventLog, caplog: pytest.LogCaptureFixture
+) -> None:
+    arm = PartName("manipulator")
+    lost = DeviceLost(ComputerName("arm"), "device arm has not been heard for 1.5 s")
+    events.append(RecordedEvent(1, 0, None, NOBODY, lost))
+    events.append(RecordedEvent(2, 0, None, NOBODY, NodeUnreachable(arm, with_device=True)))
+    await settle()
+
+    assert caplog.messages == ["device.lost: device arm has not been heard for 1.5 s"]

@@ -20,7 +20,8 @@ class Chips extends HTMLElement {
     this.deviating = this.#attention("deviating");
     this.unreachable = this.#attention("unreachable");
     this.devices = el("span", { class: "chips-devices" });
-    this.own = el("span", { class: "chip badge", hidden: true });
+    this.ownText = el("span");
+    this.own = el("span", { class: "chip badge", hidden: true }, el("span", { class: "more-word" }, "DEVICE "), this.ownText);
     this.unreal = el("span", { class: "chip badge", hidden: true });
     this.contact = el("span");
     this.delay = el("span", { class: "quiet" });
@@ -70,9 +71,9 @@ class Chips extends HTMLElement {
     );
     setAttribute(this.own, "hidden", ownDevice === null);
     if (ownDevice === null) return;
-    setText(this.own, ownWords(ownDevice));
-    setAttribute(this.own, "title", ownDevice.reason);
-    setAttribute(this.own, "data-level", ownDevice.lead === "following" ? null : "attention");
+    setText(this.ownText, ownWords(ownDevice));
+    setAttribute(this.own, "title", [ownDevice.reason, `When cut off ${ownDevice.when_cut_off}`].filter(Boolean).join("; "));
+    setAttribute(this.own, "data-level", ownDevice.lead === "supervisor" ? null : "attention");
   }
 
   #showParts({ parts, devices }) {

@@ -54,6 +54,17 @@ function isSameStructure(parts, { parts: known, names, children }) {
   return count === names.length && children.size === count;
 }
 
+/** Return by part the device that it is on as a whole; parts of this computer are not in it. */
+export function devicesOf({ parts, order, below }) {
+  const found = new Map();
+  for (const name of order) {
+    const nodes = [name, ...below.get(name)].filter((each) => parts[each].kind === "node");
+    const { device } = parts[nodes[0]] ?? {};
+    if (device && nodes.every((node) => parts[node].device === device)) found.set(name, device);
+  }
+  return found;
+}
+
 const NONE = [];
 
 /** Return the errors that are on and wanted, by part. */

@@ -9,7 +9,7 @@ import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { isSame as isSameList } from "/web/js/base/same.js";
 import { FilterBar } from "/web/js/parts/filter_bar.js";
 import { filtered, flatLines, matches, nameOf, parentOf, treeLines } from "/web/js/parts/lines.js";
-import { errorsByPart, Looks, structureOf } from "/web/js/parts/part_index.js";
+import { devicesOf, errorsByPart, Looks, structureOf } from "/web/js/parts/part_index.js";
 import { ageWords } from "/web/js/parts/row.js";
 import { RowList } from "/web/js/parts/row_list.js";
 import { StateTimes } from "/web/js/parts/state_times.js";
@@ -64,11 +64,13 @@ class PartList extends HTMLElement {
     };
     if (isSame(seen, this.#seen) && !this.#isStale) return;
     if (errors !== this.#seen.errors) this.errors = errorsByPart(errors);
+    const areDevicesNew = devices !== this.#seen.devices;
     this.#seen = seen;
     this.#times.take(events ?? []);
     const structure = structureOf(parts, this.#structure);
     const isNew = structure !== this.#structure;
     if (isNew) this.#restructure(structure);
+    if (isNew || areDevicesNew) this.onDevice = devicesOf(structure);
     const isChanged = this.#looks.take(structure, this.errors);
     if (isNew || this.#isStale) this.#listAll();
     if (isNew || isChanged || this.#isStale) this.#listUrgent();
@@ -160,17 +162,17 @@ class PartList extends HTMLElement {
     return isAttention && kind !== "any" ? `No part is ${kind}.` : "No part needs attention.";
   }
 
-  #tell({ key, name, level }) {
+  #tell({ key, name }) {
     const { parts } = this.#structure;
     const { devices, isLost, selected } = this.#seen;
     const part = parts[name];
     const heard = part.reachable === false ? heardLast(devices[part.device]) : null;
     const since = heard ?? (Date.parse(part.deviation_since_at) || this.#times.of(name, this.#view.knownAt));
-    const above = level > 1 ? parts[nameOf(parentOf(key))] : null;
+    const [device, above] = [name, nameOf(parentOf(key))].map((each) => this.onDevice.get(each));
     return {
       part,
       // A system that is on one device as a whole tells it for all below.
-      device: part.device && part.device !== above?.device ? part.device : "",
+      device: device && device !== above ? device : "",
       isOld: heard !== null,
       look: isLost ? "unknown" : this.#looks.look(name),
       errors: this.#looks.errors(name),

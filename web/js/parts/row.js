@@ -114,7 +114,7 @@ function fillFit(fit, part, { look, below, isOld }) {
   fit.key = key;
   fit.title = wanted ? `target ${stateWords(wanted)}, actual ${stateWords(actual)}` : "";
   if (old) fit.title = `last known: ${label(old)}`;
-  if (isAway) return fit.replaceChildren(old ? label(old) : "unreachable");
+  if (isAway) return fit.replaceChildren(...(old ? actualWords(old, true) : ["unreachable"]));
   if (!wanted) return fit.replaceChildren(...actualWords(actual, true));
   const isModeOnly = wanted.state === actual.state && wanted.mode;
   fit.replaceChildren(

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from api.http.part_text import part_text
 from api.http.schemas.base import timestamp
 from api.http.schemas.parts import PartJson
+from domain.computers import ComputerName
 from domain.findings import Blocker
 from domain.identifiers import ChangeId
 from domain.lifecycle import LifecycleState
@@ -66,6 +67,8 @@ views = st.builds(
     deviation_reason=st.none() | words,
     reachable=st.booleans(),
     change=st.none() | words.map(ChangeId),
+    device=st.none() | words.map(ComputerName),
+    last_known=st.none() | st.builds(StateAndMode, states, modes),
 )
 
 

@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from api.serving.composition import Composition, MisuseError, ServeOptions, compose, read_files
+from api.serving.composition import Composition, ServeOptions, compose, read_files
+from api.serving.misuse import MisuseError
 from domain.errors import InvalidModelError
 from service.files.robot_file import RobotSettings
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError

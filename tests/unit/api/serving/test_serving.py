@@ -6,7 +6,8 @@ import pytest
 
 from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
 from api.http.access import Access
-from api.serving.composition import MisuseError, ServeOptions, compose, read_files
+from api.serving.composition import ServeOptions, compose, read_files
+from api.serving.misuse import MisuseError
 from api.serving.serving import access_of, greet, greeting_json, serve
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph

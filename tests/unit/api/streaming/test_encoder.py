@@ -9,6 +9,8 @@ from api.http.page.assembled_page import assembled_page
 from api.streaming.client_input import STATE_TOPICS
 from api.streaming.encoder import StreamEncoder
 from domain.actor import NOBODY
+from domain.computers import ComputerName, DeviceState
+from domain.devices.lead_view import LeadView, Word
 from domain.errors import BlockedError
 from domain.events.event import RecordedEvent
 from domain.events.parts import NodeReported
@@ -19,7 +21,7 @@ from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.event_log import Gap
 from service.supervisor import Supervisor
-from tests.support.frames import error_view, event, frame, part_view, signal_view
+from tests.support.frames import device_view, error_view, event, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor
 
 ALL = STATE_TOPICS
@@ -137,6 +139,29 @@ def test_errors_are_sent_by_name_when_they_changed(encoder: StreamEncoder) -> No
     assert (shown["errors"]["arm.UNREACHABLE"]["part"], quiet.get("errors")) == ("arm", None)
 
 
+def test_devices_are_sent_by_name_when_they_changed(encoder: StreamEncoder) -> None:
+    arm = device_view("arm")
+
+    shown = read(encoder.frame(frame(2, devices=[arm]), 0, ALL))
+    quiet = read(encoder.frame(frame(3), 0, ALL))
+
+    assert shown["devices"]["arm"]["state"] == "connected"
+    assert "devices" not in quiet
+
+
+def test_a_device_says_whose_word_counts_there_and_others_say_nothing(
+    encoder: StreamEncoder,
+) -> None:
+    lead = LeadView(
+        ComputerName("arm"), Word.CUT_OFF, DeviceState.LOST, seconds(1), "not heard", "nothing"
+    )
+
+    shown = read(encoder.frame(frame(2, lead=lead), 0, ALL))
+
+    assert (shown["this_device"]["device"], shown["this_device"]["lead"]) == ("arm", "cut_off")
+    assert "this_device" not in read(encoder.frame(frame(3, full=True), 0, ALL))
+
+
 async def test_errors_are_encoded_ahead_also_for_clients_that_want_no_parts(
     encoder: StreamEncoder, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -168,6 +193,7 @@ def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -
         ({"parts"}, {"parts"}),
         ({"signals", "events"}, {"signals"}),
         ({"errors"}, {"errors"}),
+        ({"devices"}, {"devices"}),
         ({"task"}, {"task"}),
         ({"vehicle"}, {"vehicle"}),
         ({"holds"}, {"holds"}),

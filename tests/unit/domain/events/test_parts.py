@@ -54,3 +54,10 @@ def test_an_event_says_in_words_what_happened(event: Event, words: str) -> None:
 def test_a_short_list_has_the_steps_of_systems_and_not_those_of_each_node() -> None:
     assert not PartActualChanged(ARM, active(), inactive(), None).notable
     assert PartActualChanged(ACTUATION, active(), inactive(), None, of_system=True).notable
+
+
+def test_a_short_list_leaves_out_what_is_lost_with_its_device() -> None:
+    assert NodeUnreachable(ARM).notable
+    assert not NodeUnreachable(ARM, with_device=True).notable
+    assert not NodeReachable(ARM, with_device=True).notable
+    assert NodeReachable(ARM, with_device=True).data() == {"node": "arm"}

@@ -633,3 +633,36 @@ def test_modes_follow_every_target_and_report_as_if_all_had_been_told_at_once() 
         assert [told.actual(part) for part in model.nodes] == [
             anew.actual(part) for part in model.nodes
         ]
+
+
+# --- what was known last -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("label", ["inactive", "active.FAST"])
+def test_of_a_node_that_is_unreachable_it_stays_known_where_it_was(label: str) -> None:
+    inference = ModeInference(actuation_model())
+    _report(inference, BASE, label)
+    assert inference.last_known(BASE) is None
+
+    inference.report(NodeReport(BASE, reachable=False))
+    assert inference.actual(BASE).state is S.UNKNOWN
+    assert inference.last_known(BASE) == StateAndMode.parse(label)
+
+    inference.report(NodeReport(BASE, reachable=True))
+    assert inference.last_known(BASE) is None
+
+
+def test_a_mode_that_was_reported_outranks_parameters_also_in_memory() -> None:
+    inference = ModeInference(actuation_model())
+    _report(inference, BASE, "active.FAST")
+    inference.report(NodeReport(BASE, mode=ModeName("SLOW")))
+    inference.report(NodeReport(BASE, reachable=False))
+
+    assert inference.last_known(BASE) == StateAndMode.parse("active.SLOW")
+
+
+def test_of_a_node_that_was_never_heard_nothing_is_known() -> None:
+    inference = ModeInference(actuation_model())
+    assert inference.last_known(BASE) is None
+    inference.report(NodeReport(BASE, reachable=False))
+    assert inference.last_known(BASE) is None

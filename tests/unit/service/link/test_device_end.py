@@ -11,7 +11,6 @@ from domain.inputs import (
     SourceFault,
     TimePassed,
 )
-from domain.timebase import seconds
 from service.link.device_end import DeviceEnd
 from service.link.status import LinkStatus
 from tests.support.manual_clock import ManualClock
@@ -22,7 +21,7 @@ from tests.support.scripted_machine import DeadEnd, ScriptedMachine
 def noted(*given: Input) -> ScriptedMachine:
     """Return the machine of a device whose core took something in."""
     machine = ScriptedMachine()
-    end = DeviceEnd(machine, DeadEnd(), ManualClock(), LinkStatus([], seconds(0.1)))
+    end = DeviceEnd(machine, DeadEnd(), ManualClock(), LinkStatus({}))
     for each in given:
         end.note(each)
     return machine

@@ -36,7 +36,7 @@ class RunningEnd:
         self.machine = ScriptedMachine()
         self.link = DeadEnd()
         self.delivered: list[BackendMessage] = []
-        status = LinkStatus([THERE], seconds(0.1))
+        status = LinkStatus({THERE: seconds(0.1)})
         self.end = LinkEnd(self.machine, self.link, self.clock, status)
 
 

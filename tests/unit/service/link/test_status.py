@@ -25,14 +25,14 @@ def at(time_s: float) -> Instant:
 
 def beating(*times_s: float) -> LinkStatus:
     """Return the status of a link on which beats came at these times."""
-    status = LinkStatus([ARM], BEAT)
+    status = LinkStatus({ARM: BEAT})
     for seq, time_s in enumerate(times_s, start=1):
         status.note_heard(ARM, heard(seq), at(time_s))
     return status
 
 
 def test_of_a_computer_that_never_spoke_nothing_is_known() -> None:
-    assert LinkStatus([ARM], BEAT).of(ARM, at(5)) == Connection()
+    assert LinkStatus({ARM: BEAT}).of(ARM, at(5)) == Connection()
 
 
 def test_it_tells_when_a_computer_was_last_heard() -> None:
@@ -61,7 +61,7 @@ def test_a_computer_that_fell_silent_loses_every_beat_in_the_end() -> None:
 
 
 def test_the_round_trip_is_measured_by_the_echo_of_the_newest_beat() -> None:
-    status = LinkStatus([ARM], BEAT)
+    status = LinkStatus({ARM: BEAT})
     for seq in (1, 2, 3):
         status.note_sent(ARM, sent(seq), at(seq / 10))
     status.note_heard(ARM, heard(7, echo=2), at(0.25))
@@ -70,7 +70,7 @@ def test_the_round_trip_is_measured_by_the_echo_of_the_newest_beat() -> None:
 
 
 def test_an_echo_of_another_run_of_this_computer_measures_nothing() -> None:
-    status = LinkStatus([ARM], BEAT)
+    status = LinkStatus({ARM: BEAT})
     status.note_sent(ARM, sent(1), at(0))
     status.note_heard(ARM, heard(7, echo=1, of=THEIRS), at(9))
 
@@ -78,14 +78,14 @@ def test_an_echo_of_another_run_of_this_computer_measures_nothing() -> None:
 
 
 def test_what_cannot_be_read_is_counted() -> None:
-    status = LinkStatus([ARM], BEAT)
+    status = LinkStatus({ARM: BEAT})
     status.note_unreadable(ARM)
 
     assert status.of(ARM, at(0)).dropped == 1
 
 
 def test_a_computer_that_does_not_belong_to_the_robot_is_not_measured() -> None:
-    status = LinkStatus([ARM], BEAT)
+    status = LinkStatus({ARM: BEAT})
     stranger = ComputerName("stranger")
     status.note_heard(stranger, heard(1), at(0))
     status.note_sent(stranger, sent(1), at(0))

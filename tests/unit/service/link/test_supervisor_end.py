@@ -4,7 +4,6 @@ import asyncio
 
 from domain.commands import AskFacts
 from domain.inputs import NodeReport
-from domain.timebase import seconds
 from service.link.status import LinkStatus
 from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.ports import BackendMessage
@@ -14,7 +13,7 @@ from tests.support.scripted_machine import DeadEnd, ScriptedMachine
 
 
 def make_end(machine: ScriptedMachine) -> SupervisorEnd:
-    return SupervisorEnd(machine, DeadEnd(), ManualClock(), LinkStatus([], seconds(0.1)))
+    return SupervisorEnd(machine, DeadEnd(), ManualClock(), LinkStatus({}))
 
 
 def test_a_command_for_a_node_is_told_to_the_machine() -> None:

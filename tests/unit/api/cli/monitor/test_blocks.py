@@ -9,6 +9,7 @@ from tests.support.monitor import (
     AT,
     after,
     console,
+    device,
     error,
     event,
     frame,
@@ -22,6 +23,7 @@ from tests.support.monitor import (
     system,
     system_state,
     task,
+    this_device,
     view,
 )
 from tests.support.sentence_cases import moving
@@ -376,3 +378,52 @@ def test_reactions_are_counted_and_named_by_how_they_stand() -> None:
         "reactions: 1 exhausted: carrier.HALT; 2 acting: carrier.LIMP, carrier.REST;"
         " 1 passive: carrier.TRY"
     ]
+
+
+# --- devices -------------------------------------------------------------------------------------
+
+
+def drawn_devices(*devices: Json, later_s: float = 0.0, **more: object) -> list[str]:
+    message = {**frame(devices=named("device", *devices)), **more}
+    known = robot(message)
+    return plain(blocks.devices(view(known, later_s=later_s)))
+
+
+def test_devices_that_are_connected_are_not_told() -> None:
+    assert drawn_devices() == []
+    assert drawn_devices(device("arm")) == []
+
+
+def test_a_device_that_is_lost_is_told_with_for_how_long() -> None:
+    told = drawn_devices(device("arm", "lost"), device("base", "late"), later_s=12)
+
+    assert told == ["devices: arm lost for 12 s, base late"]
+
+
+def test_the_monitor_of_a_device_says_whose_word_counts() -> None:
+    own = this_device("arm", "device")
+
+    assert drawn_devices(this_device=own) == ["device arm: acts alone"]
+
+
+def drawn_on_devices(*parts: Json, later_s: float = 0.0) -> str:
+    devices = named("device", device("arm", "lost"), device("base"))
+    drawn = view(robot(frame(devices=devices)), later_s=later_s)
+    return plain(blocks.parts(drawn, part_rows(named("name", *parts)), 100, None))[1]
+
+
+def test_a_part_says_on_which_device_it_is() -> None:
+    assert drawn_on_devices(part("drive_base", device="base")).endswith("on base")
+
+
+def test_a_part_of_a_lost_device_is_told_as_it_was_and_how_old_that_is() -> None:
+    known = {"state": "active", "mode": "FAST"}
+    arm = off_target("drive_base", reachable=False, device="arm", last_known=known)
+
+    assert drawn_on_devices(arm, later_s=12).endswith("was active.FAST 12 s ago, on arm")
+
+
+def test_a_part_of_which_nothing_was_known_is_only_unreachable() -> None:
+    arm = off_target("drive_base", reachable=False, device="arm", last_known=None)
+
+    assert drawn_on_devices(arm, later_s=12).endswith("unreachable for 12 s, on arm")

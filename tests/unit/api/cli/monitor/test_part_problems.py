@@ -1,7 +1,7 @@
 from typing import Any
 
 from api.cli.monitor.part_problems import part_problems
-from tests.support.monitor import named, off_target, part, system
+from tests.support.monitor import device, named, off_target, part, system
 
 OFF: dict[str, Any] = {"converged": False, "target": {"state": "active", "mode": "FAST"}}
 
@@ -29,3 +29,22 @@ def test_only_the_first_three_are_named_and_the_others_counted() -> None:
 
     assert part_problems(parts)[-1] == "6 more such parts"
     assert len(part_problems(parts)) == 4
+
+
+def test_a_device_that_is_away_stands_for_its_parts_and_what_is_above_them() -> None:
+    parts = named(
+        "name",
+        system("robot", "arm", "lidar", **OFF),
+        part("arm", reachable=False, device="arm_computer"),
+        part("lidar", reachable=False, device=None),
+    )
+    devices = named("device", device("arm_computer", "lost"))
+
+    assert part_problems(parts, devices) == ["device arm_computer is lost", "lidar is unreachable"]
+
+
+def test_a_node_that_is_dead_on_a_device_that_is_heard_is_named() -> None:
+    parts = named("name", part("arm", reachable=False, device="arm_computer"))
+
+    devices = named("device", device("arm_computer"))
+    assert part_problems(parts, devices) == ["arm is unreachable"]

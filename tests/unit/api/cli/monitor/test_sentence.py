@@ -11,7 +11,18 @@ from api.cli.monitor.sentence import (
 from api.cli.monitor.store import Json, Robot
 from api.cli.monitor.view import Contact, Level, seconds_of
 from api.cli.monitor.words import time_of_day
-from tests.support.monitor import AT, after, frame, hello, robot, stop, system_state, view
+from tests.support.monitor import (
+    AT,
+    after,
+    device,
+    frame,
+    hello,
+    named,
+    robot,
+    stop,
+    system_state,
+    view,
+)
 from tests.support.sentence_cases import CASES, STORAGE, Case, combinations, moving
 
 
@@ -135,6 +146,26 @@ def test_an_engaged_stop_says_why_since_when_by_whom_and_whether_the_vehicle_sta
     assert told(None) == "it is not known whether the vehicle stands"
     # It stood once, and somebody pushes it.
     assert told(0.3, standstill_at=AT) == "the vehicle moves at 0.30 m/s"
+
+
+def test_a_stop_on_another_computer_says_where_it_is() -> None:
+    stops = [{"id": "a-1", "device": "arm"}]
+    engaged = stop(engaged=True, by="anna", since_at=AT, stops=stops, not_heard=["arm"])
+
+    said = stop_sentence(view(robot(frame(emergency_stop=engaged))))
+
+    assert said is not None
+    assert said.text.startswith("engaged at device arm (not heard), for ")
+
+
+def test_devices_that_may_go_on_under_a_stop_are_named() -> None:
+    devices = named("device", device("arm", "lost"), device("base"))
+    engaged = robot(frame(emergency_stop=stop(engaged=True, since_at=AT), devices=devices))
+
+    said = stop_sentence(view(engaged))
+
+    assert said is not None
+    assert said.more == ("arm is not known to be stopped",)
 
 
 def test_without_contact_a_stop_was_engaged_and_its_time_does_not_run_on() -> None:

@@ -4,6 +4,7 @@ from api.cli.monitor.store import Note, Robot, fold
 from tests.support.monitor import (
     AT,
     after,
+    device,
     error,
     event,
     frame,
@@ -15,6 +16,7 @@ from tests.support.monitor import (
     signal,
     stop,
     task,
+    this_device,
 )
 
 
@@ -142,6 +144,8 @@ def test_as_json_it_has_each_member_as_an_answer_to_a_request_has_it() -> None:
         "holds",
         "errors",
         "reactions",
+        "devices",
+        "this_device",
     ]
     assert shown["parts"] == {"arm": part("arm")}
     assert shown["emergency_stop"] == stop()
@@ -180,3 +184,22 @@ def test_reactions_are_known_as_they_were_told_last() -> None:
 
     assert known.reactions == {"a.LIMP": {"state": "acting"}}
     assert known.as_json()["reactions"] == [{"state": "acting"}]
+
+
+def test_devices_that_changed_are_taken_and_the_others_stay() -> None:
+    known = robot(frame(devices=named("device", device("arm"), device("base"))))
+
+    known = fold(known, frame(after(1), devices=named("device", device("arm", "lost"))))
+
+    assert {name: each["state"] for name, each in known.devices.items()} == {
+        "arm": "lost",
+        "base": "connected",
+    }
+
+
+def test_whose_word_counts_on_a_device_stays_until_it_is_told_anew() -> None:
+    known = robot(frame(this_device=this_device("arm")))
+    assert fold(known, frame(after(1))).this_device == this_device("arm")
+
+    known = fold(known, frame(after(2), this_device=this_device("arm", "cut_off")))
+    assert known.this_device == this_device("arm", "cut_off")

@@ -11,6 +11,8 @@ def test_what_has_not_changed_is_left_out_of_a_frame() -> None:
         "signals",
         "errors",
         "reactions",
+        "devices",
+        "this_device",
         "task",
         "vehicle",
         "holds",
