@@ -78,6 +78,11 @@ def story_of(seed: int) -> Story:
     return Story(seed, arrangement, tuple(sorted(in_time, key=lambda d: d[0])), teller.wire)
 
 
+def newcomer_of(name: ComputerName) -> ComputerName:
+    """Return where the network finds a second computer of a name."""
+    return ComputerName(f"{name}#2")
+
+
 class _Teller:
     """Makes chapters: some happenings that belong together, such as a cut and its end."""
 
@@ -187,4 +192,9 @@ class _Teller:
     def newcomer(self, at: float) -> list[Dated]:
         """Start a second process of one name for a while."""
         name = self.rng.choice(self.computers)
-        return [(at, Newcomer(name)), (at + self.rng.choice(LENGTHS_S), NewcomerEnds(name))]
+        end = at + self.rng.choice(LENGTHS_S)
+        told: list[Dated] = [(at, Newcomer(name)), (end, NewcomerEnds(name))]
+        if self.rng.random() < 0.5:
+            pressed = EmergencyStopRequest(True, "there is another one", ADA)
+            told.append((self.rng.uniform(at, end), Ask(newcomer_of(name), pressed)))
+        return told
