@@ -110,7 +110,7 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
 
     supervisor.kill()
     # Meanwhile the robot is no longer what was asked for.
-    await arm.until(lambda: arm.get("/devices")["this"]["state"] == "lost")
+    await arm.until(lambda: arm.get("/devices")["this"]["supervisor"] == "lost")
     arm.ask("/nodes/manipulator/state", transition="deactivate")
     supervisor = robot.supervisor(*keeps)
     begun = time.monotonic()
@@ -135,8 +135,8 @@ async def test_of_two_processes_of_one_device_the_first_stays_and_the_second_is_
     incumbent = supervisor.devices()["arm"]["incarnation"]
 
     newcomer = robot.device("arm")
-    await supervisor.until(lambda: "DEVICE_CONFLICT" in _errors(supervisor))
-    await newcomer.until(lambda: newcomer.get("/devices")["this"]["state"] == "conflict")
+    await supervisor.until(lambda: "DEVICE_CONFLICT" in supervisor.active_errors())
+    await newcomer.until(lambda: newcomer.get("/devices")["this"]["supervisor"] == "conflict")
 
     assert supervisor.devices()["arm"]["incarnation"] == incumbent
     assert supervisor.actual() == ALL_ACTIVE
@@ -144,10 +144,6 @@ async def test_of_two_processes_of_one_device_the_first_stays_and_the_second_is_
     assert newcomer.actual() == {"manipulator": ("unconfigured", None)}
     supervisor.ask("/nodes/manipulator/mode", mode="WEAK")
     assert newcomer.actual() == {"manipulator": ("unconfigured", None)}
-
-
-def _errors(computer: object) -> set[str]:
-    return {item["error"] for item in computer.get("/errors")["items"] if item["active"]}  # type: ignore[attr-defined]
 
 
 async def test_a_second_supervisor_is_refused_and_says_so(robot: RobotOfComputers) -> None:

@@ -146,6 +146,11 @@ class Computer:
         """Return how the connection to each device is."""
         return {name: item["state"] for name, item in self.devices().items()}
 
+    def active_errors(self) -> set[str]:
+        """Return the names of the errors that are active."""
+        errors = self.get("/errors")["items"]
+        return {item["error"] for item in errors if item["state"] == "active"}
+
     async def until(self, condition: Any, within_s: float = PATIENCE_S) -> float:  # noqa: ANN401
         """Wait until something holds; return how many seconds that took."""
         begun = time.monotonic()
