@@ -8,6 +8,7 @@ from api.http.dependencies import SupervisorDep
 from api.http.error_answers import ActiveQuery, answer_errors
 from api.http.route_policy import Permission, policy
 from api.http.schemas.errors import ErrorsJson
+from domain.computers import ComputerName
 from domain.errors import UnknownPartError
 from domain.state_and_mode import part_name
 
@@ -44,7 +45,7 @@ async def list_errors(
         views = core.open_errors().values() if active or open_ else core.errors()
         return await answer_errors(supervisor, views, active)
     name = part_name(part)
-    if name not in supervisor.model and name not in core.devices():
+    if name not in supervisor.model and ComputerName(name) not in core.devices():
         raise UnknownPartError("part", name, supervisor.model.parts)
     of_part = (view for view in core.errors_of(name) if view.is_open or not open_)
     return await answer_errors(supervisor, of_part, active)
