@@ -6,9 +6,8 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
@@ -17,17 +16,18 @@ from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
 from domain.commands import TellStops
 from domain.computers import ComputerName
-from domain.concern import Concern, settle
+from domain.concern import Concern, overrides, settle, takers_of
 from domain.conditions.watched import WatchedConditions
 from domain.devices.device_view import DeviceView
 from domain.devices.devices import Devices
 from domain.devices.lead import Lead
 from domain.devices.lead_view import LeadView
-from domain.devices.settings import DeviceSettings, LeadSettings
+from domain.devices.settings import DeviceSettings, LeadSettings, nodes_by_device, owners
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.announcing import Announcing
+from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
@@ -46,7 +46,7 @@ from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
-from domain.reactions.reaction import Reaction, reactions_of
+from domain.reactions.reaction import reactions_of
 from domain.reactions.reaction_view import ReactionView
 from domain.reactions.reactions import Reactions
 from domain.reactions.rules import Rules
@@ -93,23 +93,12 @@ class SupervisionSettings:
     """What is supervised of the checkpoints of nodes."""
     peers: tuple[ComputerName, ...] = ()
     """The other computers of the robot, which stop it as well; empty: it has one computer."""
+    lead: LeadSettings | None = None
+    """Of a device, which follows a supervisor; None: this computer follows nobody."""
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
     """Computers that own nodes; empty: all nodes are those of this one."""
     devices_heard_within: Duration = seconds(1.5)
     """How long rules, fallbacks and reactions wait for devices after a start."""
-
-    @property
-    def device_of(self) -> Mapping[PartName, ComputerName]:
-        """Return by node that another computer owns, that computer."""
-        return {node: name for name, each in self.devices.items() for node in each.nodes}
-
-    @property
-    def nodes_of_devices(self) -> Mapping[PartName, Sequence[PartName]]:
-        """Return by device, whose errors are named as those of parts are, the nodes it owns."""
-        return {PartName(name): each.nodes for name, each in self.devices.items()}
-
-    lead: LeadSettings | None = None
-    """Of a device, which follows a supervisor; None: this computer follows nobody."""
 
 
 class Supervision:
@@ -126,32 +115,23 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        parts = self._parts = Parts(model, outbox, settings.device_of)
-        causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
+        parts = self._parts = Parts(model, outbox, owners(settings.devices))
+        causes = ErrorCauses(model, settings.checkpoints, nodes_by_device(settings.devices))
         health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
-        # What is lost with a device follows from that from the start.
-        devices = self._devices = Devices(
-            settings.devices,
-            settings.devices_heard_within,
-            parts,
-            health.error_list,
-            outbox,
-            start,
-        )
+        self._devices = self._devices_by(settings, start)
         errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
-        reactions = reactions_of(model, self.conditions, start)
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
-        self._reactions = self._reactions_by(displacing, reactions, guards, start)
+        self._reactions = self._reactions_by(displacing, guards, start)
         self._lead = self._lead_by(settings.lead, start)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
@@ -159,7 +139,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
-            devices,
+            self._devices,
             ModeLimits(settings.signals, parts, health, outbox),
             # It rejects what is the supervisor's to ask, before anything comes of it.
             *(() if self._lead is None else (self._lead,)),
@@ -167,33 +147,29 @@ class Supervision:
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
             self._robot_state,
-            self._part_errors,
-            *self._after_part_errors(settings, start),
+            *self._part_errors_and_more(settings, start),
             self._changing,
-            # What sets targets in force, the stronger first.
-            self._reactions,
-            # A device leaves degrading and climbing back to its supervisor.
-            *(self._displacers(guards, settings.rules, displacing) if self._lead is None else ()),
+            *self._displacers(guards, settings.rules, displacing),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
         self._arrange()
 
-    def _after_part_errors(
+    def _devices_by(self, settings: SupervisionSettings, start: Instant) -> Devices:
+        # Before the errors of parts: what is lost with a device follows from that from the start.
+        within, errors = settings.devices_heard_within, self._health.error_list
+        return Devices(settings.devices, within, self._parts, errors, self._outbox, start)
+
+    def _part_errors_and_more(
         self, settings: SupervisionSettings, start: Instant
     ) -> tuple[Concern, ...]:
-        """Return what else raises errors of parts, what conditions then say, and who is told."""
+        """Return what raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
-        propagation = Propagation(
-            health.error_list,
-            self.conditions,
-            errors.unheard,
-            outbox,
-            start,
-            self._devices.unheard,
-        )
+        unheard = {UNREACHABLE: errors.unheard, LOST: self._devices.unheard}
+        propagation = Propagation(health.error_list, self.conditions, unheard, outbox, start)
         return (
+            errors,
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             # It evaluates all conditions, and so comes last of those that watch some.
@@ -202,11 +178,9 @@ class Supervision:
             announcing,
         )
 
-    def _reactions_by(
-        self, displacing: Displacing, reactions: list[Reaction], guards: Guards, start: Instant
-    ) -> Reactions:
+    def _reactions_by(self, displacing: Displacing, guards: Guards, start: Instant) -> Reactions:
         return Reactions(
-            reactions,
+            reactions_of(self.model, self.conditions, start),
             self._parts,
             self._changing,
             self._health,
@@ -226,10 +200,15 @@ class Supervision:
 
     def _displacers(
         self, guards: Guards, rules: RuleSettings, displacing: Displacing
-    ) -> tuple[Concern, Concern]:
+    ) -> tuple[Concern, ...]:
+        """Return what sets targets in force, the stronger first."""
         parts, changing, health, outbox = self._parts, self._changing, self._health, self._outbox
         errors = self._part_errors
+        if self._lead is not None:
+            # A device leaves degrading and climbing back to its supervisor.
+            return (self._reactions,)
         return (
+            self._reactions,
             Fallbacks(parts, changing, health, errors, guards, displacing, outbox),
             Rules(parts, changing, health, rules, displacing, outbox),
         )
@@ -238,10 +217,10 @@ class Supervision:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
         self._health.error_list.mark_start()
         self._outbox.errors.clear()  # What is on from the start is no change.
-        self._takers = _takers(self._concerns)
-        self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
-        self._settling = [c for c in self._concerns if _overrides(c, "settle")]
-        self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
+        self._takers = {TimePassed: (), **takers_of(self._concerns)}
+        self._clocked = [c for c in self._concerns if overrides(c, "wake_at")]
+        self._settling = [c for c in self._concerns if overrides(c, "settle")]
+        self._portioned = [c for c in self._concerns if overrides(c, "go_on")]
         self._has_more = False
         self._max_rounds = _SPARE_ROUNDS + len(self.model.parts)
         self._wake_at = self._next_wake()
@@ -489,19 +468,3 @@ class Supervision:
     def stops_to_tell(self) -> TellStops:
         """Return what other computers of the robot are to know of the stops of this one."""
         return self._emergency_stop.told()
-
-
-def _takers(
-    concerns: tuple[Concern, ...],
-) -> Mapping[type, tuple[Callable[[Any, Instant], None], ...]]:
-    """Return the handlers of each class of input, its owner first."""
-    takers: dict[type, tuple[Callable[[Any, Instant], None], ...]] = {TimePassed: ()}
-    for concern in concerns:
-        for kind, take in concern.takes.items():
-            takers[kind] = (*takers.get(kind, ()), take)
-    return takers
-
-
-def _overrides(concern: Concern, method: str) -> bool:
-    """Tell whether a concern overrides `method`; calling the empty ones would only cost time."""
-    return getattr(type(concern), method) is not getattr(Concern, method)

@@ -19,7 +19,7 @@ from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.actor import Actor
 from domain.changes.admission import ADVISORY
-from domain.computers import ComputerName, PeerStop, StopId
+from domain.computers import ComputerName, DeviceState, PeerStop, StopId
 from domain.conditions.condition import Condition
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
@@ -66,6 +66,7 @@ from tests.support.guarded_model import guarded_model
 from tests.support.http_robot import ACTUATION
 from tests.support.models import ARM, BASE, active, actuation_model
 from tests.support.reacting_robot import REST, ReactingRobot
+from tests.support.robot_of_devices import RobotOfDevices
 from tests.support.ruled_robot import RuledRobot, degrading_model
 from tests.support.shared import PROJECT
 
@@ -337,6 +338,17 @@ def a_carrier_that_reacts() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_lost_device() -> list[RecordedEvent]:
+    """A device is connected, late and lost; somebody else takes its name, and it is back."""
+    robot = RobotOfDevices().connect_all()
+    robot.says(DeviceState.LATE, reason="device arm has not been heard for 0.5 s")
+    robot.lose()
+    robot.says(DeviceState.CONFLICT, reason="device arm is not dealt with: it has another model")
+    robot.connect(run=2)
+    robot.says(DeviceState.CONNECTED, run=2, autonomous=True)
+    return robot.events
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -389,6 +401,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_lost_arm,
         a_carrier_that_reacts,
         a_wait,
+        a_lost_device,
         a_step_left_out,
         the_examples,
     )
