@@ -13,6 +13,7 @@
     |   +-- UnknownTaskError
     |   +-- UnknownEventError
     |   +-- UnknownControllerError
+    |   +-- UnknownDeviceError
     +-- InvalidValueError             a value that is never valid: type, range, NaN
     |   +-- FarStartError             a path that begins too far from the vehicle
     +-- InvalidModelError             a model file with findings
@@ -176,6 +177,12 @@ class UnknownControllerError(UnknownNameError):
     """An unknown path tracker."""
 
     code = "UNKNOWN_CONTROLLER"
+
+
+class UnknownDeviceError(UnknownNameError):
+    """An unknown device: the robot file has none of this name."""
+
+    code = "UNKNOWN_DEVICE"
 
 
 class InvalidValueError(PilothouseError):

@@ -7,13 +7,11 @@ Its concerns make the decisions; this module keeps their order.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 
 from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
-from domain.changes.settings import ChangeSettings
 from domain.commands import TellStops
 from domain.computers import ComputerName
 from domain.concern import Concern, overrides, settle, takers_of
@@ -22,14 +20,13 @@ from domain.devices.device_view import DeviceView
 from domain.devices.devices import Devices
 from domain.devices.lead import Lead
 from domain.devices.lead_view import LeadView
-from domain.devices.settings import DeviceSettings, LeadSettings, nodes_by_device, owners
+from domain.devices.settings import LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.announcing import Announcing
 from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.checkpoint_errors import CheckpointErrors
-from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
@@ -37,7 +34,6 @@ from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.propagation import Propagation
 from domain.health.reported_errors import ReportedErrors
-from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
 from domain.loosening import may_loosen
@@ -46,7 +42,7 @@ from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
-from domain.reactions.reaction import reactions_of
+from domain.reactions.reaction import Reaction, reactions_of
 from domain.reactions.reaction_view import ReactionView
 from domain.reactions.reactions import Reactions
 from domain.reactions.rules import Rules
@@ -70,35 +66,16 @@ from domain.snapshot import (
 from domain.stalls import Stalls
 from domain.state_and_mode import ModeName, PartName
 from domain.storage import Storage
+from domain.supervision_settings import SupervisionSettings
 from domain.tasks.driving import Driving
-from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
-from domain.timebase import Duration, Instant, seconds
-from domain.vehicle import VehicleLimits
+from domain.timebase import Instant
 
 _SPARE_ROUNDS = 100
 """Rounds of settling besides one per part; each round restores one node at most."""
 
 
-@dataclass(frozen=True, slots=True)
-class SupervisionSettings:
-    """Settings of the core."""
-
-    signals: tuple[SignalSettings, ...] = field(default_factory=default_signals)
-    changes: ChangeSettings = field(default_factory=ChangeSettings)
-    tasks: TaskSettings = field(default_factory=TaskSettings)
-    vehicle: VehicleLimits = field(default_factory=VehicleLimits)
-    rules: RuleSettings = field(default_factory=RuleSettings)
-    checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
-    """What is supervised of the checkpoints of nodes."""
-    peers: tuple[ComputerName, ...] = ()
-    """The other computers of the robot, which stop it as well; empty: it has one computer."""
-    lead: LeadSettings | None = None
-    """Of a device, which follows a supervisor; None: this computer follows nobody."""
-    devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
-    """Computers that own nodes; empty: all nodes are those of this one."""
-    devices_heard_within: Duration = seconds(1.5)
-    """How long rules, fallbacks and reactions wait for devices after a start."""
+__all__ = ["Supervision", "SupervisionSettings"]
 
 
 class Supervision:
@@ -115,13 +92,14 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        parts = self._parts = Parts(model, outbox, owners(settings.devices))
-        causes = ErrorCauses(model, settings.checkpoints, nodes_by_device(settings.devices))
+        parts = self._parts = Parts(model, outbox, settings.device_of)
+        causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
         health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
+        # What is lost with a device follows from that from the start.
         self._devices = self._devices_by(settings, start)
         errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
@@ -129,47 +107,58 @@ class Supervision:
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
+        reactions = reactions_of(model, self.conditions, start)
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
-        self._reactions = self._reactions_by(displacing, guards, start)
+        self._reactions = self._reactions_by(displacing, reactions, guards, start)
         self._lead = self._lead_by(settings.lead, start)
+        is_device = self._lead is not None
+        # A device leaves degrading and climbing back to its supervisor.
+        displacers = () if is_device else self._displacers(guards, settings.rules, displacing)
+        self._concerns = self._in_order(settings, displacers, storage, start)
+        self._arrange()
+
+    def _in_order(
+        self,
+        settings: SupervisionSettings,
+        displacers: tuple[Concern, ...],
+        storage: Storage,
+        start: Instant,
+    ) -> tuple[Concern, ...]:
+        """Return the concerns in the order in which they act."""
         # Driving stops the vehicle before the state is published and changes continue.
-        self._concerns: tuple[Concern, ...] = (
+        return (
             Restart(self._outbox),
             self._parts,
             self._health,
             self._emergency_stop,
             self._devices,
-            ModeLimits(settings.signals, parts, health, outbox),
+            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
             # It rejects what is the supervisor's to ask, before anything comes of it.
             *(() if self._lead is None else (self._lead,)),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
             self._robot_state,
-            *self._part_errors_and_more(settings, start),
+            self._part_errors,
+            *self._after_part_errors(settings, start),
             self._changing,
-            *self._displacers(guards, settings.rules, displacing),
+            # What sets targets in force, the stronger first.
+            self._reactions,
+            *displacers,
             Audit(self._outbox),
             Stalls(self._outbox),
         )
-        self._arrange()
 
-    def _devices_by(self, settings: SupervisionSettings, start: Instant) -> Devices:
-        # Before the errors of parts: what is lost with a device follows from that from the start.
-        within, errors = settings.devices_heard_within, self._health.error_list
-        return Devices(settings.devices, within, self._parts, errors, self._outbox, start)
-
-    def _part_errors_and_more(
+    def _after_part_errors(
         self, settings: SupervisionSettings, start: Instant
     ) -> tuple[Concern, ...]:
-        """Return what raises errors of parts, what conditions then say, and who is told."""
+        """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
         unheard = {UNREACHABLE: errors.unheard, LOST: self._devices.unheard}
         propagation = Propagation(health.error_list, self.conditions, unheard, outbox, start)
         return (
-            errors,
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             # It evaluates all conditions, and so comes last of those that watch some.
@@ -178,9 +167,11 @@ class Supervision:
             announcing,
         )
 
-    def _reactions_by(self, displacing: Displacing, guards: Guards, start: Instant) -> Reactions:
+    def _reactions_by(
+        self, displacing: Displacing, reactions: list[Reaction], guards: Guards, start: Instant
+    ) -> Reactions:
         return Reactions(
-            reactions_of(self.model, self.conditions, start),
+            reactions,
             self._parts,
             self._changing,
             self._health,
@@ -192,6 +183,10 @@ class Supervision:
             start,
         )
 
+    def _devices_by(self, settings: SupervisionSettings, start: Instant) -> Devices:
+        within, errors = settings.devices_heard_within, self._health.error_list
+        return Devices(settings.devices, within, self._parts, errors, self._outbox, start)
+
     def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
         if settings is None:
             return None
@@ -200,15 +195,10 @@ class Supervision:
 
     def _displacers(
         self, guards: Guards, rules: RuleSettings, displacing: Displacing
-    ) -> tuple[Concern, ...]:
-        """Return what sets targets in force, the stronger first."""
+    ) -> tuple[Concern, Concern]:
         parts, changing, health, outbox = self._parts, self._changing, self._health, self._outbox
         errors = self._part_errors
-        if self._lead is not None:
-            # A device leaves degrading and climbing back to its supervisor.
-            return (self._reactions,)
         return (
-            self._reactions,
             Fallbacks(parts, changing, health, errors, guards, displacing, outbox),
             Rules(parts, changing, health, rules, displacing, outbox),
         )
@@ -453,13 +443,13 @@ class Supervision:
         stopped, holds = self.emergency_stop().engaged, self.driving.holds
         return may_loosen(given, is_stopped=stopped, holds=holds)
 
-    def devices(self) -> Mapping[ComputerName, DeviceView]:
-        """Return the devices of the robot by name; empty: it has but one computer."""
-        return self._devices.views()
-
     def lead(self) -> LeadView | None:
         """Return whose word counts at this device; None: this computer follows nobody."""
         return None if self._lead is None else self._lead.view()
+
+    def devices(self) -> Mapping[ComputerName, DeviceView]:
+        """Return the devices of the robot by name; empty: it has but one computer."""
+        return self._devices.views()
 
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""

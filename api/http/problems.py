@@ -40,6 +40,7 @@ from domain.errors import (
     UnknownChangeError,
     UnknownCheckpointError,
     UnknownControllerError,
+    UnknownDeviceError,
     UnknownErrorNameError,
     UnknownEventError,
     UnknownModeError,
@@ -77,6 +78,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     UnknownChangeError: HTTPStatus.NOT_FOUND,
     UnknownTaskError: HTTPStatus.NOT_FOUND,
     UnknownEventError: HTTPStatus.NOT_FOUND,
+    UnknownDeviceError: HTTPStatus.NOT_FOUND,
     # Modes and parameters are named in bodies, not in paths.
     UnknownModeError: HTTPStatus.UNPROCESSABLE_ENTITY,
     UnknownParameterError: HTTPStatus.UNPROCESSABLE_ENTITY,

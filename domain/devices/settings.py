@@ -1,7 +1,7 @@
 """What each device of a robot owns, and what it does when it is cut off."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from domain.computers import ComputerName
@@ -60,18 +60,6 @@ class LeadSettings:
     def waits(self) -> Duration:
         """Return how long after the loss was noticed the device acts on its own."""
         return max(self.offline.after - self.lost, 0)
-
-
-def owners(devices: Mapping[ComputerName, DeviceSettings]) -> Mapping[PartName, ComputerName]:
-    """Return by node the device that owns it."""
-    return {node: name for name, each in devices.items() for node in each.nodes}
-
-
-def nodes_by_device(
-    devices: Mapping[ComputerName, DeviceSettings],
-) -> Mapping[PartName, Sequence[PartName]]:
-    """Return by device the nodes that it owns; its errors are named as those of a part are."""
-    return {PartName(name): each.nodes for name, each in devices.items()}
 
 
 def ownership_text(devices: Iterable[DeviceSettings], late: Duration, lost: Duration) -> str:

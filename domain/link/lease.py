@@ -60,7 +60,7 @@ class Lease:
         """Return why there is no lease, as a phrase that follows the other's name."""
         if self._heard_at is None:
             return "has not been heard yet"
-        if self.is_silent(now):
+        if now - self._heard_at >= self._settings.late:
             return f"has not been heard for {to_seconds(now - self._heard_at):.1f} s"
         return "does not hear this computer"
 
@@ -68,7 +68,7 @@ class Lease:
         """Return why the lease is late, as a phrase that follows the other's name."""
         if self._heard_at is not None and now - self._heard_at >= self._settings.late:
             return f"has not been heard for {to_seconds(now - self._heard_at):.1f} s"
-        return f"has not echoed anything for {to_seconds(now - self._echo_came_at):.1f} s"
+        return f"has not heard this computer for {to_seconds(now - self._echo_came_at):.1f} s"
 
     def wake_at(self) -> Instant | None:
         """Return when the lease becomes late, or ends; None: it does not hold."""

@@ -28,10 +28,9 @@ class LinkSettings:
 
     @property
     def slowly(self) -> "LinkSettings":
-        """Return the settings of the link between two devices: as many beats may be missed."""
-        times = max(self.slow_beat // self.beat, 1)
-        late, lost = self.late * times, self.lost * times
-        return replace(self, late=late, lost=lost, beat=self.slow_beat)
+        """Return the settings of the link between two devices: five beats may be missed."""
+        lost = max(self.lost, 5 * self.slow_beat)
+        return replace(self, late=lost, lost=lost, beat=self.slow_beat)
 
 
 class Owned(NamedTuple):

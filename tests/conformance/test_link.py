@@ -11,6 +11,7 @@ from typing import Protocol
 import pytest
 
 from domain.computers import SUPERVISOR, ComputerName
+from service.link.endpoints import Endpoints
 from service.link.memory import MemoryNetwork
 from service.link.port import (
     MAX_BEATS_PER_S,
@@ -18,6 +19,8 @@ from service.link.port import (
     MAX_MESSAGES_PER_S,
     Link,
 )
+from service.link.zenoh_link import ZenohLink
+from tests.support.container import free_port
 from tests.support.links import RunningLink
 from tests.support.manual_clock import ManualClock
 
@@ -46,7 +49,20 @@ class InMemory:
         return self._network.link(name)
 
 
-UNDER_TEST: list[type[Network]] = [InMemory]
+class OverZenoh:
+    """Computers over TCP on loopback."""
+
+    def __init__(self) -> None:
+        self._at = f"tcp/127.0.0.1:{free_port()}"
+
+    def link(self, name: ComputerName) -> Link:
+        own = self._at if name == SUPERVISOR else "tcp/127.0.0.1:0"
+        looked_for = () if name == SUPERVISOR else (self._at,)
+        others = [other for other in NAMES if other != name]
+        return ZenohLink(name, others, Endpoints((own,), looked_for))
+
+
+UNDER_TEST: list[type[Network]] = [InMemory, OverZenoh]
 
 
 class Robot:
@@ -217,6 +233,8 @@ async def test_a_link_that_was_cancelled_delivers_nothing_and_raises_nothing(
     robot: Robot,
 ) -> None:
     supervisor, base = await robot.start_two()
+    arm = await robot.start(ARM)
+    await arm.reach(base)
     base.send(SUPERVISOR, b"on its way")
     async with asyncio.timeout(5.0):
         await supervisor.stop()
@@ -224,7 +242,6 @@ async def test_a_link_that_was_cancelled_delivers_nothing_and_raises_nothing(
 
     base.send(SUPERVISOR, b"too late")
     supervisor.send(BASE, b"not any more")
-    arm = await robot.start(ARM)
     await arm.reach(base)
 
     assert supervisor.task.cancelled()

@@ -61,6 +61,7 @@ from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import seconds
 from tests.support.core_robot import CoreRobot
+from tests.support.device_robot import DeviceRobot, offline
 from tests.support.good import GOOD
 from tests.support.guarded_model import guarded_model
 from tests.support.http_robot import ACTUATION
@@ -349,6 +350,20 @@ def a_lost_device() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_device_that_is_cut_off() -> list[RecordedEvent]:
+    """A device follows, refuses under a stop, is cut off, does what it may, and follows again."""
+    robot = DeviceRobot(offline(drive_base="active.SLOW"))
+    robot.connect()
+    robot.carry_out("drive_base", "configure")
+    robot.stop()
+    robot.order("drive_base", "activate")
+    robot.be_late()
+    robot.lose()
+    robot.advance(3)
+    robot.connect()
+    return robot.events
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -400,6 +415,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_mode_with_other_limits,
         a_lost_arm,
         a_carrier_that_reacts,
+        a_device_that_is_cut_off,
         a_wait,
         a_lost_device,
         a_step_left_out,

@@ -38,8 +38,7 @@ async def test_the_four_steps_of_annex_4_with_both_nodes_on_other_computers(
     robot: RobotOfComputers,
 ) -> None:
     """D4.8, Annex 4, 6.2.2: the same exact states as on one computer."""
-    supervisor = robot.supervisor()
-    base, arm = robot.device("base"), robot.device("arm")
+    supervisor, base, arm = robot.all()
     await supervisor.until_connected("base", "arm")
 
     supervisor.ask("/systems/actuation/state", transition="configure")
@@ -75,9 +74,7 @@ async def test_the_four_steps_of_annex_4_with_both_nodes_on_other_computers(
 async def test_a_device_that_is_killed_is_lost_in_time_and_returns_as_new(
     robot: RobotOfComputers,
 ) -> None:
-    supervisor = robot.supervisor()
-    robot.device("base")
-    arm = robot.device("arm")
+    supervisor, _, arm = robot.all()
     await supervisor.until_connected("base", "arm")
     supervisor.ask("/systems/actuation/mode", mode="PERFORMANCE")
     before = supervisor.devices()["arm"]
@@ -132,9 +129,7 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
 async def test_of_two_processes_of_one_device_the_first_stays_and_the_second_is_refused(
     robot: RobotOfComputers,
 ) -> None:
-    supervisor = robot.supervisor()
-    robot.device("base")
-    arm = robot.device("arm")
+    supervisor, _, arm = robot.all()
     await supervisor.until_connected("base", "arm")
     supervisor.ask("/systems/actuation/mode", mode="PERFORMANCE")
     incumbent = supervisor.devices()["arm"]["incarnation"]
@@ -186,8 +181,7 @@ async def test_whoever_asks_at_the_page_of_a_device_is_sent_to_the_supervisor(
 async def test_a_stop_at_a_device_stops_the_robot_and_one_at_the_supervisor_the_device(
     robot: RobotOfComputers,
 ) -> None:
-    supervisor = robot.supervisor()
-    base, arm = robot.device("base"), robot.device("arm")
+    supervisor, base, arm = robot.all()
     await supervisor.until_connected("base", "arm")
 
     arm.ask("/emergency_stop", method="PUT", engaged=True, reason="a hand in the arm")

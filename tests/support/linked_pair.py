@@ -128,6 +128,19 @@ class LinkedRobot:
         self.supervisor = self.start(SUPERVISOR)
         self.devices = {name: self.start(name) for name in self._devices}
 
+    @classmethod
+    def out_of_step(cls) -> "LinkedRobot":
+        """Return a robot at 1 s whose device sends its beats 50 ms after those of the supervisor.
+
+        So one end notices a loss before the other.
+        """
+        robot = cls()
+        robot.kill(robot.base)
+        robot.run(0.05)
+        robot.devices[BASE] = robot.start(BASE)
+        robot.run(0.95)
+        return robot
+
     @property
     def base(self) -> Process:
         """Return the device of most stories."""

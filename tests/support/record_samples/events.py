@@ -63,6 +63,16 @@ from domain.events.health import (
     StopReleaseAsked,
     SystemStateChanged,
 )
+from domain.events.lead import (
+    DeviceActsAlone,
+    DeviceFollowsAgain,
+    DeviceTargetLeft,
+    OrderRefused,
+    OrderTaken,
+    SupervisorConnected,
+    SupervisorLate,
+    SupervisorLost,
+)
 from domain.events.parts import (
     CheckpointReached,
     DeviationBegan,
@@ -182,6 +192,25 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         ),
     ),
     "emergency_stop.standstill": (EmergencyStopStandstill(),),
+    "device.acts_alone": (DeviceActsAlone(device="arm", does='Größe ≤ 3 — "gripper\\jam"'),),
+    "device.follows_again": (DeviceFollowsAgain(device="arm"),),
+    "device.target_left": (
+        DeviceTargetLeft(
+            device="arm",
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "order.refused": (
+        OrderRefused(
+            node=PartName("left/arm"), action="activate", reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "order.taken": (OrderTaken(node=PartName("left/arm"), action="set_parameters"),),
+    "supervisor.connected": (SupervisorConnected(device="arm"),),
+    "supervisor.late": (SupervisorLate(device="arm", reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "supervisor.lost": (SupervisorLost(device="arm", reason='Größe ≤ 3 — "gripper\\jam"'),),
     "error.acknowledged": (
         ErrorAcknowledged(error="LOW_BATTERY"),
         ErrorAcknowledged(error="DEVIATES", part=PartName("arm")),

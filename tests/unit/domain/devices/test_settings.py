@@ -4,8 +4,6 @@ from domain.devices.settings import (
     DeviceSettings,
     LeadSettings,
     OfflineSettings,
-    nodes_by_device,
-    owners,
     ownership_text,
 )
 from domain.lifecycle import LifecycleState
@@ -70,11 +68,3 @@ def test_targets_in_another_order_are_another_robot() -> None:
 
 def test_another_silence_after_which_computers_are_lost_is_another_robot() -> None:
     assert text(device()) != text(device(), lost_s=2)
-
-
-def test_each_node_of_a_device_is_owned_by_it_alone() -> None:
-    arm = DeviceSettings(ComputerName("arm"), (ARM,))
-    both = {arm.name: arm, ComputerName("base"): DeviceSettings(ComputerName("base"), (BASE,))}
-
-    assert owners(both) == {ARM: "arm", BASE: "base"}
-    assert nodes_by_device(both) == {"arm": (ARM,), "base": (BASE,)}

@@ -3,11 +3,12 @@
 import pytest
 
 from domain.devices.settings import LeadSettings
+from domain.errors import UnknownDeviceError
 from domain.health.signals import default_signals
 from domain.lifecycle import LifecycleState
 from domain.state_and_mode import StateAndMode
 from domain.timebase import seconds
-from service.files.computer_share import ComputerShare, UnknownDeviceError, share_of
+from service.files.computer_share import ComputerShare, share_of
 from service.files.robot_file import (
     InvalidRobotFileError,
     RobotSettings,
