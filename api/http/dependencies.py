@@ -80,7 +80,9 @@ def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
     name = part_name(part)
     if name in known:
         return name
-    if name in supervisor.model and kind != "device":
+    if kind == "device":
+        raise UnknownPartError(kind, name, tuple(known))
+    if name in supervisor.model:
         path = request.url.path.replace(part, name, 1)
         raise UnknownPartError.of_other_kind(name, kind, _hint(supervisor.model, kind, name, path))
     hint = _hint(supervisor.model, kind, name, request.url.path)
