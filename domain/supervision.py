@@ -185,7 +185,8 @@ class Supervision:
 
     def _devices_by(self, settings: SupervisionSettings, start: Instant) -> Devices:
         within, errors = settings.devices_heard_within, self._health.error_list
-        return Devices(settings.devices, within, self._parts, errors, self._outbox, start)
+        parts, stop = self._parts, self._emergency_stop
+        return Devices(settings.devices, within, parts, errors, stop, self._outbox, start)
 
     def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
         if settings is None:

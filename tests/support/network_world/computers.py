@@ -66,9 +66,7 @@ class Disk:
             vars(self).update({**backup, "_values": dict(backup["_values"])})  # type: ignore[call-overload]
         self._boot += 1
         values = tuple(self._values.values())
-        return Restored(
-            values, self._boot, self._next_event, self._changes + 1, run=run
-        )
+        return Restored(values, self._boot, self._next_event, self._changes + 1, run=run)
 
 
 class Computer:
