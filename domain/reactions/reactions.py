@@ -102,8 +102,7 @@ class Reactions(Concern):
         self._views = ReactionViews(reactions, self._budgets, self._triggers, outbox)
         self._revision: int | None = None
         """That of the conditions when they were judged last; None: all have to be."""
-        self._was_waiting = parts.awaits_devices
-        self._was_stopped = False
+        self._was_waiting = self._was_stopped = False
         self._stop_ended_at: Instant | None = None
 
     # --- what happens ----------------------------------------------------------------------------
