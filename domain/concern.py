@@ -83,3 +83,19 @@ def settle(concerns: Sequence[Concern], now: Instant, max_rounds: int) -> None:
             if quiet == len(concerns):
                 return
     raise NotSettledError(tuple(type(concern).__name__ for concern in moving), max_rounds)
+
+
+def takers_of(
+    concerns: Sequence[Concern],
+) -> Mapping[type, tuple[Callable[[Any, Instant], None], ...]]:
+    """Return the handlers of each class of input, its owner first."""
+    takers: dict[type, tuple[Callable[[Any, Instant], None], ...]] = {}
+    for concern in concerns:
+        for kind, take in concern.takes.items():
+            takers[kind] = (*takers.get(kind, ()), take)
+    return takers
+
+
+def overrides(concern: Concern, method: str) -> bool:
+    """Tell whether a concern overrides `method`; calling the empty ones would only cost time."""
+    return getattr(type(concern), method) is not getattr(Concern, method)

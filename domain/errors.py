@@ -13,6 +13,7 @@
     |   +-- UnknownTaskError
     |   +-- UnknownEventError
     |   +-- UnknownControllerError
+    |   +-- UnknownDeviceError
     +-- InvalidValueError             a value that is never valid: type, range, NaN
     |   +-- FarStartError             a path that begins too far from the vehicle
     +-- InvalidModelError             a model file with findings
@@ -25,6 +26,7 @@
     |   +-- TooManyHoldsError
     |   +-- OwnedBySupervisorError
     |   +-- OfflineError
+    |   +-- ActsElsewhereError
     +-- BackendUnavailableError       the backend is down: no node can be reached
     +-- StorageDegradedError          storage cannot be written, or not be read
 
@@ -176,6 +178,12 @@ class UnknownControllerError(UnknownNameError):
     """An unknown path tracker."""
 
     code = "UNKNOWN_CONTROLLER"
+
+
+class UnknownDeviceError(UnknownNameError):
+    """An unknown device: the robot file has none of this name."""
+
+    code = "UNKNOWN_DEVICE"
 
 
 class InvalidValueError(PilothouseError):
@@ -346,6 +354,16 @@ class OfflineError(RefusedError):
             f"{what} is commanded by the supervisor, which {device} cannot hear: {why}"
         )
         self.hint = "restore the connection; stop, hold, deactivate are possible here"
+
+
+class ActsElsewhereError(RefusedError):
+    """A request about a reaction that a device decides about."""
+
+    code = "ACTS_ELSEWHERE"
+
+    def __init__(self, reaction: str, device: str) -> None:
+        super().__init__(f"reaction {reaction} acts on device {device}, whatever is said here")
+        self.hint = f"arm or acknowledge it on the page of {device}"
 
 
 class BackendUnavailableError(PilothouseError):

@@ -6,30 +6,27 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Iterator, Mapping
 
 from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
-from domain.changes.settings import ChangeSettings
 from domain.commands import TellStops
 from domain.computers import ComputerName
-from domain.concern import Concern, settle
+from domain.concern import Concern, overrides, settle, takers_of
 from domain.conditions.watched import WatchedConditions
 from domain.devices.device_view import DeviceView
 from domain.devices.devices import Devices
 from domain.devices.lead import Lead
 from domain.devices.lead_view import LeadView
-from domain.devices.settings import DeviceSettings, LeadSettings
+from domain.devices.settings import LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.announcing import Announcing
+from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.checkpoint_errors import CheckpointErrors
-from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
@@ -37,7 +34,6 @@ from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.propagation import Propagation
 from domain.health.reported_errors import ReportedErrors
-from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
 from domain.loosening import may_loosen
@@ -70,46 +66,16 @@ from domain.snapshot import (
 from domain.stalls import Stalls
 from domain.state_and_mode import ModeName, PartName
 from domain.storage import Storage
+from domain.supervision_settings import SupervisionSettings
 from domain.tasks.driving import Driving
-from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
-from domain.timebase import Duration, Instant, seconds
-from domain.vehicle import VehicleLimits
+from domain.timebase import Instant
 
 _SPARE_ROUNDS = 100
 """Rounds of settling besides one per part; each round restores one node at most."""
 
 
-@dataclass(frozen=True, slots=True)
-class SupervisionSettings:
-    """Settings of the core."""
-
-    signals: tuple[SignalSettings, ...] = field(default_factory=default_signals)
-    changes: ChangeSettings = field(default_factory=ChangeSettings)
-    tasks: TaskSettings = field(default_factory=TaskSettings)
-    vehicle: VehicleLimits = field(default_factory=VehicleLimits)
-    rules: RuleSettings = field(default_factory=RuleSettings)
-    checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
-    """What is supervised of the checkpoints of nodes."""
-    peers: tuple[ComputerName, ...] = ()
-    """The other computers of the robot, which stop it as well; empty: it has one computer."""
-    devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
-    """Computers that own nodes; empty: all nodes are those of this one."""
-    devices_heard_within: Duration = seconds(1.5)
-    """How long rules, fallbacks and reactions wait for devices after a start."""
-
-    @property
-    def device_of(self) -> Mapping[PartName, ComputerName]:
-        """Return by node that another computer owns, that computer."""
-        return {node: name for name, each in self.devices.items() for node in each.nodes}
-
-    @property
-    def nodes_of_devices(self) -> Mapping[PartName, Sequence[PartName]]:
-        """Return by device, whose errors are named as those of parts are, the nodes it owns."""
-        return {PartName(name): each.nodes for name, each in self.devices.items()}
-
-    lead: LeadSettings | None = None
-    """Of a device, which follows a supervisor; None: this computer follows nobody."""
+__all__ = ["Supervision", "SupervisionSettings"]
 
 
 class Supervision:
@@ -134,33 +100,40 @@ class Supervision:
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
         # What is lost with a device follows from that from the start.
-        devices = self._devices = Devices(
-            settings.devices,
-            settings.devices_heard_within,
-            parts,
-            health.error_list,
-            outbox,
-            start,
-        )
+        self._devices = self._devices_by(settings, start)
         errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
-        reactions = reactions_of(model, self.conditions, start)
+        reactions = reactions_of(model, self.conditions, start, settings.reactions_of_devices)
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
         self._reactions = self._reactions_by(displacing, reactions, guards, start)
         self._lead = self._lead_by(settings.lead, start)
+        is_device = self._lead is not None
+        # A device leaves degrading and climbing back to its supervisor.
+        displacers = () if is_device else self._displacers(guards, settings.rules, displacing)
+        self._concerns = self._in_order(settings, displacers, storage, start)
+        self._arrange()
+
+    def _in_order(
+        self,
+        settings: SupervisionSettings,
+        displacers: tuple[Concern, ...],
+        storage: Storage,
+        start: Instant,
+    ) -> tuple[Concern, ...]:
+        """Return the concerns in the order in which they act."""
         # Driving stops the vehicle before the state is published and changes continue.
-        self._concerns: tuple[Concern, ...] = (
+        return (
             Restart(self._outbox),
             self._parts,
             self._health,
             self._emergency_stop,
-            devices,
-            ModeLimits(settings.signals, parts, health, outbox),
+            self._devices,
+            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
             # It rejects what is the supervisor's to ask, before anything comes of it.
             *(() if self._lead is None else (self._lead,)),
             self.driving,
@@ -172,12 +145,10 @@ class Supervision:
             self._changing,
             # What sets targets in force, the stronger first.
             self._reactions,
-            # A device leaves degrading and climbing back to its supervisor.
-            *(self._displacers(guards, settings.rules, displacing) if self._lead is None else ()),
+            *displacers,
             Audit(self._outbox),
             Stalls(self._outbox),
         )
-        self._arrange()
 
     def _after_part_errors(
         self, settings: SupervisionSettings, start: Instant
@@ -185,14 +156,8 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
-        propagation = Propagation(
-            health.error_list,
-            self.conditions,
-            errors.unheard,
-            outbox,
-            start,
-            self._devices.unheard,
-        )
+        unheard = {UNREACHABLE: errors.unheard, LOST: self._devices.unheard}
+        propagation = Propagation(health.error_list, self.conditions, unheard, outbox, start)
         return (
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
@@ -218,6 +183,11 @@ class Supervision:
             start,
         )
 
+    def _devices_by(self, settings: SupervisionSettings, start: Instant) -> Devices:
+        within, errors = settings.devices_heard_within, self._health.error_list
+        parts, stop = self._parts, self._emergency_stop
+        return Devices(settings.devices, within, parts, errors, stop, self._outbox, start)
+
     def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
         if settings is None:
             return None
@@ -238,10 +208,10 @@ class Supervision:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
         self._health.error_list.mark_start()
         self._outbox.errors.clear()  # What is on from the start is no change.
-        self._takers = _takers(self._concerns)
-        self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
-        self._settling = [c for c in self._concerns if _overrides(c, "settle")]
-        self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
+        self._takers = {TimePassed: (), **takers_of(self._concerns)}
+        self._clocked = [c for c in self._concerns if overrides(c, "wake_at")]
+        self._settling = [c for c in self._concerns if overrides(c, "settle")]
+        self._portioned = [c for c in self._concerns if overrides(c, "go_on")]
         self._has_more = False
         self._max_rounds = _SPARE_ROUNDS + len(self.model.parts)
         self._wake_at = self._next_wake()
@@ -474,13 +444,13 @@ class Supervision:
         stopped, holds = self.emergency_stop().engaged, self.driving.holds
         return may_loosen(given, is_stopped=stopped, holds=holds)
 
-    def devices(self) -> Mapping[ComputerName, DeviceView]:
-        """Return the devices of the robot by name; empty: it has but one computer."""
-        return self._devices.views()
-
     def lead(self) -> LeadView | None:
         """Return whose word counts at this device; None: this computer follows nobody."""
         return None if self._lead is None else self._lead.view()
+
+    def devices(self) -> Mapping[ComputerName, DeviceView]:
+        """Return the devices of the robot by name; empty: it has but one computer."""
+        return self._devices.views()
 
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""
@@ -489,19 +459,3 @@ class Supervision:
     def stops_to_tell(self) -> TellStops:
         """Return what other computers of the robot are to know of the stops of this one."""
         return self._emergency_stop.told()
-
-
-def _takers(
-    concerns: tuple[Concern, ...],
-) -> Mapping[type, tuple[Callable[[Any, Instant], None], ...]]:
-    """Return the handlers of each class of input, its owner first."""
-    takers: dict[type, tuple[Callable[[Any, Instant], None], ...]] = {TimePassed: ()}
-    for concern in concerns:
-        for kind, take in concern.takes.items():
-            takers[kind] = (*takers.get(kind, ()), take)
-    return takers
-
-
-def _overrides(concern: Concern, method: str) -> bool:
-    """Tell whether a concern overrides `method`; calling the empty ones would only cost time."""
-    return getattr(type(concern), method) is not getattr(Concern, method)

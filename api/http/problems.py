@@ -22,6 +22,7 @@ from api.http.schemas.problem import BodyFault, Problem
 from api.http.stop_asked import StopTakenError
 from domain.conditions.lexer import ConditionSyntaxError
 from domain.errors import (
+    ActsElsewhereError,
     BackendUnavailableError,
     BlockedError,
     FarStartError,
@@ -40,6 +41,7 @@ from domain.errors import (
     UnknownChangeError,
     UnknownCheckpointError,
     UnknownControllerError,
+    UnknownDeviceError,
     UnknownErrorNameError,
     UnknownEventError,
     UnknownModeError,
@@ -77,6 +79,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     UnknownChangeError: HTTPStatus.NOT_FOUND,
     UnknownTaskError: HTTPStatus.NOT_FOUND,
     UnknownEventError: HTTPStatus.NOT_FOUND,
+    UnknownDeviceError: HTTPStatus.NOT_FOUND,
     # Modes and parameters are named in bodies, not in paths.
     UnknownModeError: HTTPStatus.UNPROCESSABLE_ENTITY,
     UnknownParameterError: HTTPStatus.UNPROCESSABLE_ENTITY,
@@ -106,6 +109,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     TooManyHoldsError: HTTPStatus.CONFLICT,
     OwnedBySupervisorError: HTTPStatus.CONFLICT,
     OfflineError: HTTPStatus.CONFLICT,
+    ActsElsewhereError: HTTPStatus.CONFLICT,
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,

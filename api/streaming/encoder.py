@@ -152,7 +152,7 @@ class StreamEncoder:
             yield f'"reactions":{robot.reactions.text(frame.reactions)}'
         if "devices" in topics and (frame.full or frame.devices):
             yield f'"devices":{robot.devices.text(frame.devices)}'
-        if "devices" in topics and frame.lead_changed:
+        if "devices" in topics and frame.lead is not None and frame.lead_changed:
             yield f'"this_device":{robot.this_device(frame.lead)}'
         if "task" in topics and frame.task_changed:
             yield f'"task":{robot.task(frame.task)}'

@@ -92,9 +92,9 @@ class RobotEncoder:
         limits = self._supervisor.core.driving.limits
         return VehicleJson.of(view, limits, self._clock).model_dump_json()
 
-    def this_device(self, view: LeadView | None) -> str:
-        """Return which device the service runs on; `null` for none."""
-        return "null" if view is None else ThisDeviceJson.of(view, self._clock).model_dump_json()
+    def this_device(self, view: LeadView) -> str:
+        """Return which device the service runs on, and whose word counts there."""
+        return ThisDeviceJson.of(view, self._clock).model_dump_json()
 
     def holds(self, views: Mapping[str, HoldView]) -> str:
         """Return the holds by owner; encoded again only for another mapping."""

@@ -32,10 +32,10 @@ _MODULES = (
     devices,
     health,
     driving,
+    lead,
     reactions,
     service,
     targets,
-    lead,
 )
 
 EVENTS: Mapping[str, type[Event]] = {

@@ -10,7 +10,7 @@ from domain.computers import ComputerName
 from domain.devices.own_signals import readable_signals, signals_of_device
 from domain.devices.settings import DeviceSettings, LeadSettings
 from domain.devices.sub_model import LeftOut, sub_model
-from domain.errors import UnknownNameError
+from domain.errors import UnknownDeviceError
 from domain.health.signals import SignalSettings
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName, part_name
@@ -18,12 +18,6 @@ from service.files.includes import INCLUDE
 from service.files.robot_file import RobotSettings
 from service.files.ros2_block import error_named
 from service.files.source_block import MISSED_PERIODS
-
-
-class UnknownDeviceError(UnknownNameError):
-    """An unknown device: the robot file has none of this name."""
-
-    code = "UNKNOWN_DEVICE"
 
 
 class SettingsOfDevice(RobotSettings):
@@ -81,6 +75,21 @@ def share_of(model: SmhModel, robot: RobotSettings) -> ComputerShare:
     if robot.devices:
         return _share_of_supervisor(model, robot)
     return ComputerShare(model, robot, model, robot)
+
+
+def reactions_of_devices(model: SmhModel, robot: RobotSettings) -> dict[str, ComputerName]:
+    """Return by name of a reaction the device that decides about it, since all of it is there."""
+    if not (robot.devices and model.reactions):
+        return {}
+    signals = robot.to_signal_settings()
+    return {
+        name: device.name
+        for device in robot.to_device_settings(model)
+        for declared in sub_model(
+            model, device.nodes, readable_signals(signals, device.signals)
+        ).model.reactions.values()
+        for name in declared
+    }
 
 
 def _share_of_device(model: SmhModel, robot: RobotSettings, name: ComputerName) -> ComputerShare:

@@ -8,7 +8,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Page
 
-from tests.support.device_cases import CASES
+from tests.support.device_cases import CASES, PLACES
 from tests.support.monitor import AT, device, frame, named, part, system, this_device
 
 pytestmark = pytest.mark.browser
@@ -29,6 +29,11 @@ def test_page_and_terminal_say_the_same_of_devices(page: Page) -> None:
     said = run(page, script, [dict(case.devices) for case in CASES])
     for case, told in zip(CASES, said, strict=True):
         assert told == [[*case.amiss], [*case.problems], case.not_stopped], case.name
+
+
+def test_page_and_terminal_say_the_same_of_where_a_stop_is_engaged(page: Page) -> None:
+    said = run(page, "return given.map(words.stopPlaces);", [stop for stop, _ in PLACES])
+    assert said == [words for _, words in PLACES]
 
 
 def test_a_device_that_is_away_stands_for_its_parts_in_the_sentence(page: Page) -> None:

@@ -38,8 +38,7 @@ async def test_the_four_steps_of_annex_4_with_both_nodes_on_other_computers(
     robot: RobotOfComputers,
 ) -> None:
     """D4.8, Annex 4, 6.2.2: the same exact states as on one computer."""
-    supervisor = robot.supervisor()
-    base, arm = robot.device("base"), robot.device("arm")
+    supervisor, base, arm = robot.all()
     await supervisor.until_connected("base", "arm")
 
     supervisor.ask("/systems/actuation/state", transition="configure")
@@ -75,9 +74,7 @@ async def test_the_four_steps_of_annex_4_with_both_nodes_on_other_computers(
 async def test_a_device_that_is_killed_is_lost_in_time_and_returns_as_new(
     robot: RobotOfComputers,
 ) -> None:
-    supervisor = robot.supervisor()
-    robot.device("base")
-    arm = robot.device("arm")
+    supervisor, _, arm = robot.all()
     await supervisor.until_connected("base", "arm")
     supervisor.ask("/systems/actuation/mode", mode="PERFORMANCE")
     before = supervisor.devices()["arm"]
@@ -106,15 +103,14 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
     robot: RobotOfComputers, tmp_path: Path
 ) -> None:
     keeps = "--data", str(tmp_path / "supervisor")
-    supervisor = robot.supervisor(*keeps)
-    base, arm = robot.device("base"), robot.device("arm")
+    supervisor, base, arm = robot.all(*keeps)
     await supervisor.until_connected("base", "arm")
     supervisor.ask("/systems/actuation/mode", mode="PERFORMANCE")
 
     supervisor.kill()
     # Meanwhile the robot is no longer what was asked for.
-    await arm.until(lambda: arm.get("/devices")["this"]["state"] == "lost")
-    arm.ask("/nodes/manipulator/state", transition="deactivate")
+    arm.kill()
+    arm = robot.device("arm")
     supervisor = robot.supervisor(*keeps)
     begun = time.monotonic()
     await supervisor.until_connected("base", "arm")
@@ -122,9 +118,9 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
 
     assert took_s < RETURN_WITHIN_S + SEEN_S
     assert supervisor.actual()["drive_base"] == ("active", "FAST")
-    assert supervisor.actual()["manipulator"] == ("inactive", None)
-    await asyncio.sleep(1.0)  # Nothing comes: that can only be waited for.
-    assert arm.actual() == {"manipulator": ("inactive", None)}
+    assert supervisor.actual()["manipulator"] == ("unconfigured", None)
+    await asyncio.sleep(1.5)  # Nothing comes: that can only be waited for.
+    assert arm.actual() == {"manipulator": ("unconfigured", None)}
     assert base.actual() == {"drive_base": ("active", "FAST")}
     assert supervisor.targets()["manipulator"] == ("active", "STRONG")
 
@@ -132,16 +128,14 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
 async def test_of_two_processes_of_one_device_the_first_stays_and_the_second_is_refused(
     robot: RobotOfComputers,
 ) -> None:
-    supervisor = robot.supervisor()
-    robot.device("base")
-    arm = robot.device("arm")
+    supervisor, _, arm = robot.all()
     await supervisor.until_connected("base", "arm")
     supervisor.ask("/systems/actuation/mode", mode="PERFORMANCE")
     incumbent = supervisor.devices()["arm"]["incarnation"]
 
     newcomer = robot.device("arm")
-    await supervisor.until(lambda: "DEVICE_CONFLICT" in _errors(supervisor))
-    await newcomer.until(lambda: newcomer.get("/devices")["this"]["state"] == "conflict")
+    await supervisor.until(lambda: "DEVICE_CONFLICT" in supervisor.active_errors())
+    await newcomer.until(lambda: newcomer.get("/devices")["this"]["supervisor"] == "conflict")
 
     assert supervisor.devices()["arm"]["incarnation"] == incumbent
     assert supervisor.actual() == ALL_ACTIVE
@@ -149,10 +143,6 @@ async def test_of_two_processes_of_one_device_the_first_stays_and_the_second_is_
     assert newcomer.actual() == {"manipulator": ("unconfigured", None)}
     supervisor.ask("/nodes/manipulator/mode", mode="WEAK")
     assert newcomer.actual() == {"manipulator": ("unconfigured", None)}
-
-
-def _errors(computer: object) -> set[str]:
-    return {item["error"] for item in computer.get("/errors")["items"] if item["active"]}  # type: ignore[attr-defined]
 
 
 async def test_a_second_supervisor_is_refused_and_says_so(robot: RobotOfComputers) -> None:
@@ -186,8 +176,7 @@ async def test_whoever_asks_at_the_page_of_a_device_is_sent_to_the_supervisor(
 async def test_a_stop_at_a_device_stops_the_robot_and_one_at_the_supervisor_the_device(
     robot: RobotOfComputers,
 ) -> None:
-    supervisor = robot.supervisor()
-    base, arm = robot.device("base"), robot.device("arm")
+    supervisor, base, arm = robot.all()
     await supervisor.until_connected("base", "arm")
 
     arm.ask("/emergency_stop", method="PUT", engaged=True, reason="a hand in the arm")

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from api.cli.monitor.store import Json
-from tests.support.monitor import device, named
+from tests.support.monitor import device, named, stop
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +22,25 @@ def devices(**states: str) -> Mapping[str, Json]:
     """Return devices in these states."""
     return named("device", *(device(name, state) for name, state in states.items()))
 
+
+def stopped_at(*places: str | None, not_heard: tuple[str, ...] = ()) -> Json:
+    """Return an emergency stop that is engaged on these computers; None: on this one."""
+    stops = [{"id": f"s{number}", "device": place} for number, place in enumerate(places)]
+    return stop(engaged=True, stops=stops, waits_for=[], not_heard=list(not_heard))
+
+
+PLACES: tuple[tuple[Json, str], ...] = (
+    (stop(engaged=True), ""),
+    (stopped_at(None), ""),
+    (stopped_at("arm"), "at device arm"),
+    (stopped_at("arm", "arm", not_heard=("arm", "base")), "at device arm (not heard)"),
+    (
+        stopped_at("arm", None, "supervisor", not_heard=("supervisor",)),
+        "at device arm, here and at the supervisor (not heard)",
+    ),
+    (stopped_at("a", "b", "c", "d", "e"), "at device a, at device b, at device c and 2 more"),
+)
+"""Emergency stops, and where they are engaged in words."""
 
 CASES = (
     DeviceCase("one computer", {}),

@@ -87,9 +87,13 @@ class DeviceRobot(CoreRobot):
             command: NodeCommand = AskTransition(request, name, Transition(what))
         else:
             command = AskParameters(request, name, what)
+        self.give_order(command)
+        return request
+
+    def give_order(self, command: NodeCommand) -> None:
+        """Let a command of the supervisor arrive."""
         self.give(OrderReceived(command))
         self.advance(0)
-        return request
 
     def carry_out(self, node: str, *orders: str | dict[str, ParameterValue]) -> None:
         """Let the supervisor order several things one after the other, each in its time."""

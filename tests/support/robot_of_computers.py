@@ -4,13 +4,15 @@ import asyncio
 import socket
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import httpx
 
-from tests.support.process import COMMAND, ServiceProcess, device, service
+from tests.support.process import ServiceProcess, device, service
 from tests.support.shared import PROJECT
 
 MODEL = PROJECT / "service" / "example" / "actuation.yaml"
@@ -47,17 +49,30 @@ class RobotOfComputers:
         link = f"link: {{connect: [tcp/127.0.0.1:{free_port()}]}}\n"
         self.file.write_text(f"name: lawn\n{link}devices:\n{devices}{more}")
         self._stack = ExitStack()
-        self.command: tuple[str, ...] = COMMAND
 
     def supervisor(self, *arguments: str) -> "Computer":
         """Start the supervisor; without a folder it remembers nothing."""
-        options = (str(MODEL), "--robot", str(self.file), *_data(arguments))
-        return Computer(self._stack.enter_context(service(*options, command=self.command)))
+        return self._started(service(*self._options(arguments)))
 
     def device(self, name: str, *arguments: str) -> "Computer":
         """Start a device; without a folder it remembers nothing."""
-        options = (str(MODEL), "--robot", str(self.file), *_data(arguments))
-        return Computer(self._stack.enter_context(device(name, *options, command=self.command)))
+        return self._started(device(name, *self._options(arguments)))
+
+    def all(self, *arguments: str) -> tuple["Computer", "Computer", "Computer"]:
+        """Start the supervisor with its arguments, the base and the arm, all at once."""
+        supervisor = partial(self.supervisor, *arguments)
+        starts = (supervisor, partial(self.device, "base"), partial(self.device, "arm"))
+        with ThreadPoolExecutor() as threads:
+            supervisor, base, arm = threads.map(lambda start: start(), starts)
+        return supervisor, base, arm
+
+    def _options(self, arguments: tuple[str, ...]) -> tuple[str, ...]:
+        return (str(MODEL), "--robot", str(self.file), *_data(arguments))
+
+    def _started(self, process: AbstractContextManager[ServiceProcess]) -> "Computer":
+        running = self._stack.enter_context(process)
+        http = httpx.Client(base_url=running.url, timeout=30)
+        return Computer(running, self._stack.enter_context(http))
 
     def close(self) -> None:
         """Kill all that runs."""
@@ -83,9 +98,9 @@ def robot_of_computers(
 class Computer:
     """One computer of the robot, through its HTTP interface."""
 
-    def __init__(self, process: ServiceProcess) -> None:
+    def __init__(self, process: ServiceProcess, http: httpx.Client) -> None:
         self.process = process
-        self._http = httpx.Client(base_url=process.url, timeout=30)
+        self._http = http
 
     @property
     def greeting(self) -> str:
@@ -131,6 +146,11 @@ class Computer:
     def device_states(self) -> dict[str, str]:
         """Return how the connection to each device is."""
         return {name: item["state"] for name, item in self.devices().items()}
+
+    def active_errors(self) -> set[str]:
+        """Return the names of the errors that are active."""
+        errors = self.get("/errors")["items"]
+        return {item["error"] for item in errors if item["state"] == "active"}
 
     async def until(self, condition: Any, within_s: float = PATIENCE_S) -> float:  # noqa: ANN401
         """Wait until something holds; return how many seconds that took."""

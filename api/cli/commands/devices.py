@@ -28,7 +28,7 @@ _TITLES = ("device", "state", "heard", "parts", "when cut off", "stops")
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
-    add_format(parser, "json: {items, this}")
+    add_format(parser, "json: {items}, of a device {items, this}")
     add_url(parser)
 
 

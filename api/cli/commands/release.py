@@ -1,12 +1,14 @@
 """`pilothouse release`: release the emergency stop, or holds."""
 
 import argparse
+from time import monotonic, sleep
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from api.cli.commands.command import Command, add_format, add_url, say_json, with_service
 from api.cli.completers import hold_owners
 from api.cli.hold_lines import hold_line
+from api.cli.monitor.device_words import stop_places
 from api.cli.unknown_name import no_such
 from api.client.outcomes import Json, Outcome
 from api.terminal_text import say
@@ -14,20 +16,25 @@ from api.terminal_text import say
 if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
 
+_WAIT_S, _LOOK_S = 2.0, 0.1
+"""How long other computers may take to release their stops, and how often that is looked at."""
+
 _ABOUT = "release the emergency stop, or holds"
 _TEXT = """\
 Release the emergency stop; with owners, release their holds instead. Then tell
 what still holds the task. A task that nothing holds drives on.
 
 The holds `error` and `vehicle` end with their cause, and a hardware stop is
-released at its button.
+released at its button. Of a robot with several computers, the stops of all that
+can be heard are released; the stop of another one is released there.
 
   pilothouse release                       the emergency stop
   pilothouse release operator              the hold of this owner
   pilothouse hold --list                   which holds are there?
 
 exit code: 0 released, or it was not engaged;
-           1 rejected, or there is no such hold; 2 no answer
+           1 rejected, still engaged somewhere, or there is no such hold;
+           2 no answer
 """
 
 
@@ -56,7 +63,9 @@ def _run(options: argparse.Namespace) -> int:
             told = _release_holds(client, options.owners, is_volatile=options.volatile)
         else:
             told = _release_stop(client, options.reason, before, is_volatile=options.volatile)
-        return _say_rest(client, told, options.format)
+        latch = _say_rest(client, told, options.format)
+        is_left = latch["engaged"] and not options.owners
+        return Outcome.FAILED if is_left else Outcome.SUCCEEDED
 
     return with_service(options.url, ask)
 
@@ -67,8 +76,20 @@ COMMAND = Command("release", _ABOUT, _TEXT, _add_options, _run)
 def _release_stop(
     client: "ServiceClient", reason: str | None, before: Json, *, is_volatile: bool
 ) -> list[str]:
-    body = {"engaged": False, "reason": reason, "volatile": is_volatile}
-    client.call("PUT", "/emergency_stop", body)
+    """Release the stops that there were before, and wait until other computers say that they did.
+
+    A stop that is engaged meanwhile is not released: nobody saw it.
+    """
+    body: dict[str, object] = {"engaged": False, "reason": reason, "volatile": is_volatile}
+    # A service of an earlier release does not tell single stops.
+    if "stops" in before:
+        body["stops"] = [stop["id"] for stop in before["stops"]]
+    latch, end = client.call("PUT", "/emergency_stop", body), monotonic() + _WAIT_S
+    while latch.get("waits_for") and monotonic() < end:
+        sleep(_LOOK_S)
+        latch = client.call("GET", "/emergency_stop")
+    if latch["engaged"]:
+        return []
     return [f"the emergency stop {'is released' if before['engaged'] else 'was not engaged'}"]
 
 
@@ -83,16 +104,17 @@ def _release_holds(client: "ServiceClient", owners: list[str], *, is_volatile: b
     return [f"the hold of {owner} is released" for owner in owners]
 
 
-def _say_rest(client: "ServiceClient", told: list[str], how: str) -> Outcome:
-    """Say what was done, and what still keeps the vehicle from driving."""
+def _say_rest(client: "ServiceClient", told: list[str], how: str) -> Json:
+    """Say what was done, and what still keeps the vehicle from driving; return the stop."""
     latch, holds = client.call("GET", "/emergency_stop"), client.call("GET", "/holds")["items"]
     if how == "json":
         say_json({"emergency_stop": latch, "holds": holds})
-        return Outcome.SUCCEEDED
+        return latch
     for line in told:
         say(line)
     if latch["engaged"]:
-        say(f"the emergency stop is engaged: {latch['reason'] or 'no reason given'}")
+        where = f" {places}" if (places := stop_places(latch)) else ""
+        say(f"the emergency stop is engaged{where}: {latch['reason'] or 'no reason given'}")
     for hold in holds:
         say(f"still {hold_line(hold)}")
-    return Outcome.SUCCEEDED
+    return latch

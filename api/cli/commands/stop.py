@@ -29,6 +29,8 @@ _LONGEST_REASON = 500
 _NOT_DELIVERED = "Not delivered. Use the hardware stop."
 _NOT_KNOWN = "It is not known whether the stop was delivered. Use the hardware stop."
 
+_THERE = "Use the hardware stop there."
+
 _ABOUT = "stop the vehicle, and keep it stopped"
 _TEXT = f"""\
 Engage the emergency stop: speed 0 is commanded at once, and nothing drives
@@ -153,6 +155,8 @@ def stop(options: StopOptions, address: "Address", ask: Callable[..., "Answer"])
         return _say_undelivered(delivery, options, address)
     if not options.is_json:
         say(f"stop engaged {delivery.took_s:.2f} s after it was asked for")
+    if silent := delivery.answer.body.get("not_heard"):
+        complain(f"{', '.join(silent)}: not heard, and not known to be stopped. {_THERE}")
     if delivery.answer.is_volatile:
         _say_volatile(ask)
     still = Standstill(ask, delivery.answer.body, is_quiet=options.is_json)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from api.cli.commands.command import Command, add_format, add_url, with_service
 from api.cli.completers import mode_names, part_names
 from api.cli.hold_lines import hold_line
+from api.cli.monitor.device_words import stop_places
 from api.cli.unknown_name import no_such
 from api.client.outcomes import Json, Outcome
 from api.terminal_text import say
@@ -77,7 +78,8 @@ def why_robot(client: "ServiceClient", how: str, say: Callable[[str], None]) -> 
         task = str(state["task_status"]).lower().replace("_", " ")
         say(f"the robot is {state['state']}, {task}{'; nothing keeps it' if is_free else ''}")
         if stop["engaged"]:
-            say(f"  emergency stop by {stop['by']}: {stop['reason'] or 'no reason given'}")
+            where = f" {places}" if (places := stop_places(stop)) else ""
+            say(f"  emergency stop{where} by {stop['by']}: {stop['reason'] or 'no reason given'}")
         for line in (*reason_lines(state["reasons"]), *(f"  {hold_line(hold)}" for hold in holds)):
             say(line)
     return Outcome.SUCCEEDED if is_free else Outcome.FAILED

@@ -57,6 +57,19 @@ def not_stopped_words(devices: Mapping[str, Json]) -> str:
     return f"{_named(names)} {verb} not known to be stopped"
 
 
+def stop_places(stop: Json) -> str:
+    """Return where the emergency stop is engaged; empty: only at the service that says so.
+
+    Args:
+        stop: The emergency stop; an older service does not say where it is.
+    """
+    places = list(dict.fromkeys(each["device"] for each in stop.get("stops", ())))
+    if all(device is None for device in places):
+        return ""
+    silent = stop["not_heard"]
+    return _named([_place(device) + " (not heard)" * (device in silent) for device in places])
+
+
 def own_words(this: Json) -> str:
     """Return which device the service runs on, and whose word counts there."""
     return f"device {this['device']}: {_LEADS[this['lead']]}"
@@ -67,6 +80,12 @@ def heard_last(device: Json | None) -> str | None:
     if device is None or not is_away(device) or device["state"] == "never_seen":
         return None
     return str(device["heard_at"] or device["since_at"])
+
+
+def _place(device: str | None) -> str:
+    if device is None:
+        return "here"
+    return "at the supervisor" if device == "supervisor" else f"at device {device}"
 
 
 def _named(names: Sequence[str]) -> str:

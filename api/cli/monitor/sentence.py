@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from api.cli.monitor import words
-from api.cli.monitor.device_words import not_stopped_words
+from api.cli.monitor.device_words import not_stopped_words, stop_places
 from api.cli.monitor.part_problems import part_problems
 from api.cli.monitor.store import Robot
 from api.cli.monitor.view import Level, View, seconds_of
@@ -71,7 +71,8 @@ def stop_sentence(view: View) -> Sentence | None:
     why = f": {stop['reason']}" if stop["reason"] else ""
     since = f"for {words.duration(view.known_for_s(stop['since_at']))}"
     engaged = "engaged" if is_live else "was engaged"
-    text = f"{engaged}{why}, {since}{by}, {standstill_words(view.robot)}"
+    where = f" {places}" if (places := stop_places(stop)) else ""
+    text = f"{engaged}{where}{why}, {since}{by}, {standstill_words(view.robot)}"
     away = not_stopped_words(view.robot.devices)
     return Sentence("EMERGENCY STOP", text, (away,) if away else (), "error")
 

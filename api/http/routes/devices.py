@@ -9,7 +9,7 @@ from api.http.schemas.devices import DevicesJson, ListedDeviceJson, ThisDeviceJs
 router = APIRouter(prefix="/devices", tags=["devices"])
 
 
-@router.get("")
+@router.get("", response_model_exclude_unset=True)
 @policy(Permission.OBSERVE)
 async def list_devices(supervisor: SupervisorDep) -> DevicesJson:
     """List the devices of the robot; a robot of one computer has none.
@@ -18,11 +18,11 @@ async def list_devices(supervisor: SupervisorDep) -> DevicesJson:
     """
     supervisor.let_pass()
     clock, now = supervisor.clock, supervisor.clock.now()
-    views, lead = supervisor.core.devices().values(), supervisor.core.lead()
-    return DevicesJson(
-        items=[
-            ListedDeviceJson.at(view, supervisor.connection(view.device), clock, now)
-            for view in views
-        ],
-        this=None if lead is None else ThisDeviceJson.of(lead, clock),
-    )
+    items = [
+        ListedDeviceJson.at(view, supervisor.connection(view.device), clock, now)
+        for view in supervisor.core.devices().values()
+    ]
+    lead = supervisor.core.lead()
+    if lead is None:
+        return DevicesJson(items=items)
+    return DevicesJson(items=items, this=ThisDeviceJson.of(lead, clock))

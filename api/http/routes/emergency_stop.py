@@ -11,6 +11,7 @@ from api.http.schemas.health import (
     EmergencyStopJson,
 )
 from api.http.stop_route import IgnoredDep, StopRoute
+from domain.computers import StopId
 from domain.inputs import EmergencyStopRequest
 
 router = APIRouter(prefix="/emergency_stop", tags=["health"], route_class=StopRoute)
@@ -38,8 +39,13 @@ async def set_emergency_stop(
 
     This is a software stop. It is not safety-rated and does not replace a hardware stop. A restart
     of the service does not release it. While storage fails it is released only with `volatile`.
+
+    Of a robot with several computers, each has a stop of its own, and the robot is stopped while
+    any is engaged. A release ends the one here, and asks the other computers to end theirs:
+    `waits_for` tells who did not yet. One that cannot be heard is not asked.
     """
-    asked = EmergencyStopRequest(body.engaged, body.reason or "", actor)
+    stops = None if body.stops is None else tuple(map(StopId, body.stops))
+    asked = EmergencyStopRequest(body.engaged, body.reason or "", actor, stops)
     await kept.submit(asked, volatile=body.volatile)
     shown = EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
     return EmergencyStopAnswerJson(**dict(shown)).model_copy(update=ignored)

@@ -1,8 +1,9 @@
 """The computers of a robot as clients see them."""
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
-from api.http.schemas.base import Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.base import Json, Timestamp, left_out, timestamp, timestamp_or_none
 from domain.computers import Connection, DeviceState
 from domain.devices.device_view import DeviceView
 from domain.devices.lead_view import LeadView, Word
@@ -128,6 +129,8 @@ class DevicesJson(Json):
     """The other computers of the robot, in the order of the robot file."""
 
     items: list[ListedDeviceJson]
-    this: ThisDeviceJson | None = Field(
-        description="On a device, which it is and whose word counts; null: this is the supervisor"
+    this: ThisDeviceJson | SkipJsonSchema[None] = Field(
+        default=None,
+        description="On a device: which it is, and whose word counts there; else left out",
+        json_schema_extra=left_out,
     )

@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from datetime import datetime
+from typing import Annotated
 
 from pydantic import Field
 
 from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
 from api.http.schemas.problem import WithIgnored
 from api.http.schemas.sent_values import SentSignalValue
+from domain.computers import StopView
 from domain.errors import InvalidValueError
 from domain.findings import Fact
 from domain.health.signals import signal_name
@@ -27,6 +29,12 @@ MAX_SOURCE = 64
 
 MAX_REASON = 500
 """Largest length of the reason of an emergency stop, in characters."""
+
+MAX_STOPS = 1_000
+"""Largest number of stops that one request releases."""
+
+MAX_STOP_ID = 100
+"""Largest length of the id of a stop, in characters."""
 
 
 class PendingJson(Json):
@@ -173,14 +181,47 @@ class TakenReadingsJson(SystemStateJson, WithIgnored):
     """The system state that follows from readings."""
 
 
+class EngagedStopJson(Json):
+    """One emergency stop that is engaged."""
+
+    id: str = Field(description="Never used twice; a release names it")
+    device: str | None = Field(
+        description="Computer on which it is engaged, `supervisor` or a device; null: this one"
+    )
+    by: str
+    reason: str
+    since_at: Timestamp
+
+    @classmethod
+    def of(cls, view: StopView, clock: Clock) -> "EngagedStopJson":
+        """Show `view`."""
+        return cls(
+            id=view.id,
+            device=view.computer,
+            by=view.by,
+            reason=view.reason,
+            since_at=timestamp(clock, view.since),
+        )
+
+
 class EmergencyStopJson(Json):
-    """The latch that only a person releases."""
+    """The latch that only a person releases: engaged while a stop is, on any computer."""
 
     engaged: bool
     by: str | None
     reason: str | None
     since_at: Timestamp | None
     standstill_at: Timestamp | None
+    stops: list[EngagedStopJson] = Field(
+        description="All that are engaged, the oldest first: `by`, `reason` and `since_at` are its"
+    )
+    waits_for: tuple[str, ...] = Field(
+        description="Computers that were asked to release a stop, and did not say yet that they did"
+    )
+    not_heard: tuple[str, ...] = Field(
+        description="While it is engaged, computers that cannot be heard: they are not known to be"
+        " stopped, and their own stops stay engaged"
+    )
 
     @classmethod
     def of(cls, view: EmergencyStopView, clock: Clock) -> "EmergencyStopJson":
@@ -191,6 +232,9 @@ class EmergencyStopJson(Json):
             reason=view.reason,
             since_at=timestamp_or_none(clock, view.since),
             standstill_at=timestamp_or_none(clock, view.standstill_at),
+            stops=[EngagedStopJson.of(stop, clock) for stop in view.stops],
+            waits_for=view.waits_for,
+            not_heard=view.not_heard,
         )
 
 
@@ -264,6 +308,12 @@ class EmergencyStopBody(Body):
     volatile: bool = Field(
         default=False,
         description="Release it though storage fails; a restart of the service may forget that",
+    )
+    stops: list[Annotated[str, Field(max_length=MAX_STOP_ID)]] | None = Field(
+        default=None,
+        max_length=MAX_STOPS,
+        description="Ids of the stops that are released, which somebody saw; any other stays"
+        " engaged. Omitted: all that are known",
     )
 
 

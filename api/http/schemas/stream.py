@@ -105,11 +105,11 @@ class StateFrame(Json):
         ),
         json_schema_extra=left_out,
     )
-    this_device: ThisDeviceJson | None = Field(
+    this_device: ThisDeviceJson | SkipJsonSchema[None] = Field(
         default=None,
         description=(
-            "The device that the service runs on, and whose word counts there; null: it is no"
-            " device; left out: as it was"
+            "The device that the service runs on, and whose word counts there; left out: as it was,"
+            " or it is no device"
         ),
         json_schema_extra=left_out,
     )

@@ -63,6 +63,16 @@ from domain.events.health import (
     StopReleaseAsked,
     SystemStateChanged,
 )
+from domain.events.lead import (
+    DeviceActsAlone,
+    DeviceFollowsAgain,
+    DeviceTargetLeft,
+    OrderRefused,
+    OrderTaken,
+    SupervisorConnected,
+    SupervisorLate,
+    SupervisorLost,
+)
 from domain.events.parts import (
     CheckpointReached,
     DeviationBegan,
@@ -79,6 +89,7 @@ from domain.events.reactions import (
     ReactionEnded,
     ReactionExhausted,
     ReactionOverruled,
+    ReactionReported,
     ReactionWouldAct,
 )
 from domain.events.service import (
@@ -98,7 +109,7 @@ from domain.events.targets import (
 )
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
-from domain.reaction_terms import Action, Arm
+from domain.reaction_terms import Action, Arm, ReactionState
 from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from tests.support.record_samples.device_events import DEVICE_EVENTS
@@ -182,6 +193,28 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         ),
     ),
     "emergency_stop.standstill": (EmergencyStopStandstill(),),
+    "device.acts_alone": (DeviceActsAlone(device="arm", does='Größe ≤ 3 — "gripper\\jam"'),),
+    "device.follows_again": (DeviceFollowsAgain(device="arm"),),
+    "device.target_left": (
+        DeviceTargetLeft(
+            device="arm",
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.reported": (
+        ReactionReported(part=PartName("left/arm"), reaction="LIMP", state=ReactionState.EXHAUSTED),
+    ),
+    "order.refused": (
+        OrderRefused(
+            node=PartName("left/arm"), action="activate", reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "order.taken": (OrderTaken(node=PartName("left/arm"), action="set_parameters"),),
+    "supervisor.connected": (SupervisorConnected(device="arm"),),
+    "supervisor.late": (SupervisorLate(device="arm", reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "supervisor.lost": (SupervisorLost(device="arm", reason='Größe ≤ 3 — "gripper\\jam"'),),
     "error.acknowledged": (
         ErrorAcknowledged(error="LOW_BATTERY"),
         ErrorAcknowledged(error="DEVIATES", part=PartName("arm")),

@@ -2,23 +2,30 @@
 
 import asyncio
 from collections.abc import Callable
+from itertools import takewhile
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
 from domain.actor import Actor
-from domain.commands import Drive, NodeCommand
+from domain.commands import ActAlone, Drive, LinkCommand, NodeCommand, TellStops
+from domain.computers import ComputerName
 from domain.health.signals import default_signals
 from domain.inputs import (
     BackendStatus,
     EmergencyStopRequest,
     HoldRequest,
+    Input,
     ReleaseRequest,
     TaskRequest,
 )
+from domain.kept import KeptEmergencyStop
+from domain.supervision import SupervisionSettings
 from domain.tasks.holds import MAX_HOLDS
 from domain.timebase import seconds
 from service.files.model_file import LoadedModel
+from service.keeper import NO_STORES, Stores
 from service.ports import BackendMessage
 from service.running import TaskFailedError
 from service.storage.journal import ANNOUNCED, Boot
@@ -75,6 +82,58 @@ async def test_commands_reach_the_nodes_before_anybody_is_told() -> None:
         supervisor.submit(EmergencyStopRequest(engaged=True, reason="", actor=Actor("test")))
         assert backend.sent == []
         assert supervisor.core.emergency_stop().engaged
+
+
+class Link:
+    """Other computers, which note what they are told."""
+
+    def __init__(self) -> None:
+        self.sent: list[LinkCommand] = []
+
+    def send(self, command: LinkCommand) -> None:
+        self.sent.append(command)
+
+    def note(self, _: Input) -> None:
+        """Learn nothing."""
+
+    def connection(self, _: ComputerName) -> NoReturn:
+        raise NotImplementedError
+
+    async def run(self, _: Callable[[BackendMessage], None]) -> None:
+        self.sent.append(ActAlone(autonomous=False))
+        await asyncio.Event().wait()
+
+
+def _told(link: Link) -> list[list[str]]:
+    return [
+        [stop.by for stop in command.stops]
+        for command in takewhile(lambda command: isinstance(command, TellStops), link.sent)
+        if isinstance(command, TellStops)
+    ]
+
+
+@pytest.mark.parametrize("is_kept", [True, False])
+async def test_other_computers_know_of_a_stop_before_they_hear_anything_else(
+    is_kept: bool,
+) -> None:
+    clock, model = ManualClock(), actuation_model()
+    peers = SupervisionSettings(peers=(ComputerName("arm"),))
+    store = MemoryStore(kept={(KeptEmergencyStop, ""): KeptEmergencyStop(True, "ada", "", 0)})
+    boot = Boot("e1", "1", clock.now(), clock.wall_time(clock.now()), "", "")
+    supervisor = Supervisor(
+        LoadedModel(model, (), ""),
+        make_onboard(model, clock.now(), peers),
+        clock,
+        Backend(lambda _: None),
+        stores=Stores(MemoryJournal(boot, clock, store)) if is_kept else NO_STORES,
+    )
+    supervisor.link = link = Link()
+    async with running(supervisor):
+        supervisor.submit(EmergencyStopRequest(engaged=True, reason="", actor=Actor("bert")))
+
+    assert _told(link)[0] == (["ada"] if is_kept else [])
+    (stop,) = supervisor.core.stops_to_tell().stops
+    assert stop.id.startswith(f"{supervisor.epoch}-"), "no other run has such a stop"
 
 
 async def test_a_service_that_ends_holds_the_task_and_stops_the_vehicle() -> None:

@@ -45,6 +45,18 @@ export function notReachedWords(devices) {
   return names.length > 0 ? `STOP may not reach ${named(names)}` : "";
 }
 
+/** "at device arm (not heard) and here": where a stop is engaged; "" while that is only here. */
+export function stopPlaces({ stops = [], not_heard: silent = [] }) {
+  const places = [...new Set(stops.map(({ device }) => device))];
+  if (places.every((device) => device === null)) return "";
+  return named(places.map((device) => placeOf(device) + (silent.includes(device) ? " (not heard)" : "")));
+}
+
+function placeOf(device) {
+  if (device === null) return "here";
+  return device === "supervisor" ? "at the supervisor" : `at device ${device}`;
+}
+
 function named(names) {
   const first = names.length > NAMED ? [...names.slice(0, NAMED), `${names.length - NAMED} more`] : names;
   const last = first.at(-1);

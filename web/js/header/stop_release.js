@@ -1,7 +1,7 @@
 /** <ph-stop-release>: a band while the emergency stop is engaged: who engaged it, and its release. */
 
 import { request } from "/web/js/base/api.js";
-import { notStoppedWords } from "/web/js/base/device_words.js";
+import { notStoppedWords, stopPlaces } from "/web/js/base/device_words.js";
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { whileSending } from "/web/js/base/sending.js";
 import { standstillWords } from "/web/js/base/state_sentence.js";
@@ -29,21 +29,25 @@ class StopRelease extends HTMLElement {
   update({ live, contact, volatile, stopProgress }) {
     const latch = live.emergencyStop;
     setAttribute(this, "hidden", !latch?.engaged);
-    if (!latch?.engaged) return;
+    if (!latch?.engaged) return this.#say("");
+    const where = stopPlaces(latch);
     const by = latch.by ? ` by ${latch.by}` : "";
     const why = latch.reason ? `: ${latch.reason}` : "";
     const when = latch.since_at ? ` at ${timeOfDay(latch.since_at)}` : "";
-    setText(this.what, `Emergency stop engaged${when}${by}${why}`);
+    setText(this.what, `Emergency stop engaged${where && ` ${where}`}${when}${by}${why}`);
     setText(this.stands, contact.level === "lost" ? "" : `; ${standstillWords(live)}`);
     const away = notStoppedWords(live.devices);
     setText(this.unheard, away && `; ${away}`);
     drawSteps(this.steps, stopProgress);
+    this.stops = latch.stops;
     this.release.disabled = contact.level === "lost" || Boolean(live.replay);
     this.release.volatile = volatile;
   }
 
   #release(volatile) {
-    const body = { engaged: false, reason: this.reason.value.trim() || NO_REASON };
+    // What came meanwhile, nobody saw.
+    const stops = this.stops?.map(({ id }) => id);
+    const body = { engaged: false, reason: this.reason.value.trim() || NO_REASON, stops };
     if (volatile) body.volatile = true;
     return whileSending(this.release.button, async () => {
       let said = "";
@@ -51,12 +55,18 @@ class StopRelease extends HTMLElement {
         const detail = await request("PUT", "/emergency_stop", body, { keepalive: true, timeoutMs: RELEASED_MS });
         this.reason.value = "";
         this.dispatchEvent(new CustomEvent("ph-latch", { bubbles: true, detail }));
+        const silent = detail.stops?.filter(({ device }) => detail.not_heard.includes(device));
+        if (silent?.length > 0) said = `Still engaged ${stopPlaces({ ...detail, stops: silent })}. Release it there.`;
       } catch ({ message }) {
         said = `Not released: ${message}`;
       }
-      setText(this.problem, said);
-      setAttribute(this.problem, "hidden", said === "");
+      this.#say(said);
     });
+  }
+
+  #say(problem) {
+    setText(this.problem, problem);
+    setAttribute(this.problem, "hidden", problem === "");
   }
 }
 

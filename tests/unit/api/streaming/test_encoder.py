@@ -9,6 +9,8 @@ from api.http.page.assembled_page import assembled_page
 from api.streaming.client_input import STATE_TOPICS
 from api.streaming.encoder import StreamEncoder
 from domain.actor import NOBODY
+from domain.computers import ComputerName, DeviceState
+from domain.devices.lead_view import LeadView, Word
 from domain.errors import BlockedError
 from domain.events.event import RecordedEvent
 from domain.events.parts import NodeReported
@@ -145,6 +147,19 @@ def test_devices_are_sent_by_name_when_they_changed(encoder: StreamEncoder) -> N
 
     assert shown["devices"]["arm"]["state"] == "connected"
     assert "devices" not in quiet
+
+
+def test_a_device_says_whose_word_counts_there_and_others_say_nothing(
+    encoder: StreamEncoder,
+) -> None:
+    lead = LeadView(
+        ComputerName("arm"), Word.CUT_OFF, DeviceState.LOST, seconds(1), "not heard", "nothing"
+    )
+
+    shown = read(encoder.frame(frame(2, lead=lead), 0, ALL))
+
+    assert (shown["this_device"]["device"], shown["this_device"]["lead"]) == ("arm", "cut_off")
+    assert "this_device" not in read(encoder.frame(frame(3, full=True), 0, ALL))
 
 
 async def test_errors_are_encoded_ahead_also_for_clients_that_want_no_parts(

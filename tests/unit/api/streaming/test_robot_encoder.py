@@ -96,6 +96,17 @@ def test_the_emergency_stop_is_as_in_its_get(encoder: RobotEncoder, supervisor: 
         "reason": "smoke",
         "since_at": "2026-01-01T00:00:00.000Z",
         "standstill_at": None,
+        "stops": [
+            {
+                "id": "stop-1",
+                "device": None,
+                "by": "anna",
+                "reason": "smoke",
+                "since_at": "2026-01-01T00:00:00.000Z",
+            }
+        ],
+        "waits_for": [],
+        "not_heard": [],
     }
 
 

@@ -1,7 +1,8 @@
 """What the ends of the link are made of follows from the files that the computers share."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
+from typing import Any
 
 import pytest
 
@@ -31,9 +32,15 @@ class Ends:
         self.delivered: dict[str, list[BackendMessage]] = {}
         self._running: list[asyncio.Task[None]] = []
 
-    def start(self, name: str, model: SmhModel | None = None, **more: object) -> LinkEnd:
+    def start(
+        self,
+        name: str,
+        model: SmhModel | None = None,
+        devices: Mapping[str, Any] = DEVICES,
+        **more: object,
+    ) -> LinkEnd:
         """Make the end of a computer, and let it run."""
-        model, robot = model or actuation_model(), settings_of(name, **more)
+        model, robot = model or actuation_model(), settings_of(name, devices, **more)
         place = place_in(robot)
         assert place is not None
         link = self._network.link(ComputerName(name))

@@ -61,6 +61,45 @@ def test_a_hold_is_released_by_its_owner(service: AskedService, capsys: Output) 
     assert capsys.readouterr().out.splitlines() == ["the hold of operator is released"]
 
 
+def stopped(*stops: tuple[str, str | None], **more: object) -> dict[str, object]:
+    """Return an emergency stop with stops of these ids on these computers."""
+    told = [{"id": each, "device": device} for each, device in stops]
+    nothing = {"engaged": bool(stops), "reason": "dog", "waits_for": [], "not_heard": []}
+    return {**nothing, "stops": told, **more}
+
+
+def test_only_what_was_there_before_is_released(service: AskedService, capsys: Output) -> None:
+    later = stopped(("stop-9", None))
+    service.answers["GET /emergency_stop"] = [stopped(("stop-7", None), ("arm-1", "arm")), later]
+    service.answers["PUT /emergency_stop"] = later
+
+    assert main(["release"]) == 1
+
+    assert service.writes[0][2]["stops"] == ["stop-7", "arm-1"]
+    assert capsys.readouterr().out.splitlines()[0] == "the emergency stop is engaged: dog"
+
+
+def test_other_computers_get_time_to_release_their_stops(
+    service: AskedService, capsys: Output, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("api.cli.commands.release.sleep", lambda _: None)
+    waiting = stopped(("arm-1", "arm"), waits_for=["arm"])
+    service.answers["GET /emergency_stop"] = [waiting, waiting, stopped(), stopped()]
+    service.answers["PUT /emergency_stop"] = waiting
+
+    assert main(["release"]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == "the emergency stop is released"
+
+
+def test_whose_stop_stands_is_told(service: AskedService, capsys: Output) -> None:
+    service.answers["GET /emergency_stop"] = stopped(("arm-1", "arm"), not_heard=["arm"])
+    service.answers["PUT /emergency_stop"] = stopped(("arm-1", "arm"), not_heard=["arm"])
+
+    assert main(["release"]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "the emergency stop is engaged at device arm (not heard): dog"
+
+
 def test_an_engaged_stop_is_told_though_a_hold_is_released(
     service: AskedService, capsys: Output
 ) -> None:

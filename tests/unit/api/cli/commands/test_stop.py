@@ -150,6 +150,14 @@ def test_what_a_restart_would_forget_is_told(robot: Robot, capsys: Output) -> No
     assert "would forget this: the disk is full" in capsys.readouterr().err
 
 
+def test_computers_that_may_go_on_are_named(robot: Robot, capsys: Output) -> None:
+    robot.answer = Answer(200, {**LATCH, "not_heard": ["arm", "base"]}, is_volatile=False)
+
+    assert main(["stop"]) == 0
+    told = "arm, base: not heard, and not known to be stopped. Use the hardware stop there."
+    assert told in capsys.readouterr().err
+
+
 def test_ctrl_c_between_tries_leaves_it_open_whether_it_was_delivered(
     robot: Robot, monkeypatch: pytest.MonkeyPatch, capsys: Output
 ) -> None:

@@ -156,6 +156,15 @@ def test_errors_stop_and_holds_keep_a_robot_from_driving() -> None:
     ]
 
 
+def test_a_stop_on_another_computer_says_where_it_is() -> None:
+    stops = [{"id": "arm-1", "device": "arm"}]
+    stop = {"engaged": True, "by": "ada", "reason": "dog", "stops": stops, "not_heard": ["arm"]}
+
+    _, said = Robot(**{"/emergency_stop": stop}).why()
+
+    assert said[1] == "  emergency stop at device arm (not heard) by ada: dog"
+
+
 def test_what_keeps_a_robot_is_written_as_json() -> None:
     _, (told,) = Robot().why("json")
 

@@ -8,8 +8,10 @@ from api.cli.monitor.device_words import (
     not_stopped_words,
     own_words,
     state_words,
+    stop_places,
 )
-from tests.support.device_cases import CASES, DeviceCase
+from api.cli.monitor.store import Json
+from tests.support.device_cases import CASES, PLACES, DeviceCase
 from tests.support.monitor import AT, device, this_device
 
 
@@ -20,6 +22,11 @@ def test_what_is_said_of_devices(case: DeviceCase) -> None:
     assert tuple(f"{each['device']} {state_words(each)}" for each in found) == case.amiss
     assert tuple(device_problems(case.devices)) == case.problems
     assert not_stopped_words(case.devices) == case.not_stopped
+
+
+@pytest.mark.parametrize(("stop", "words"), PLACES)
+def test_it_is_said_where_a_stop_is_engaged(stop: Json, words: str) -> None:
+    assert stop_places(stop) == words
 
 
 def test_a_device_that_is_late_still_counts_as_heard() -> None:

@@ -148,6 +148,16 @@ def test_an_engaged_stop_says_why_since_when_by_whom_and_whether_the_vehicle_sta
     assert told(0.3, standstill_at=AT) == "the vehicle moves at 0.30 m/s"
 
 
+def test_a_stop_on_another_computer_says_where_it_is() -> None:
+    stops = [{"id": "a-1", "device": "arm"}]
+    engaged = stop(engaged=True, by="anna", since_at=AT, stops=stops, not_heard=["arm"])
+
+    said = stop_sentence(view(robot(frame(emergency_stop=engaged))))
+
+    assert said is not None
+    assert said.text.startswith("engaged at device arm (not heard), for ")
+
+
 def test_devices_that_may_go_on_under_a_stop_are_named() -> None:
     devices = named("device", device("arm", "lost"), device("base"))
     engaged = robot(frame(emergency_stop=stop(engaged=True, since_at=AT), devices=devices))

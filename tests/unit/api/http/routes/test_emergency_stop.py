@@ -14,6 +14,9 @@ async def test_a_robot_starts_with_the_emergency_stop_released(robot: HttpRobot)
         "reason": None,
         "since_at": None,
         "standstill_at": None,
+        "stops": [],
+        "waits_for": [],
+        "not_heard": [],
     }
 
 
@@ -29,6 +32,17 @@ async def test_who_engages_it_why_and_when_is_kept(robot: HttpRobot) -> None:
         "reason": "child on the path",
         "since_at": "2026-01-01T00:00:02.000Z",
         "standstill_at": None,
+        "stops": [
+            {
+                "id": answer.json()["stops"][0]["id"],
+                "device": None,
+                "by": "http:127.0.0.1",
+                "reason": "child on the path",
+                "since_at": "2026-01-01T00:00:02.000Z",
+            }
+        ],
+        "waits_for": [],
+        "not_heard": [],
     }
     assert (await robot.get("/system_state"))["errors"] == ["ESTOP"]
 
@@ -62,10 +76,34 @@ async def test_no_reading_releases_it_and_a_person_does(robot: HttpRobot) -> Non
     assert (await robot.get("/system_state"))["state"] == "IDLE"
 
 
+async def test_a_release_ends_only_the_stop_that_somebody_saw(robot: HttpRobot) -> None:
+    first = (await robot.http.put(PATH, json={"engaged": True})).json()
+    await robot.http.put(PATH, json={"engaged": False})
+    await robot.http.put(PATH, json={"engaged": True, "reason": "another child"})
+
+    seen = [stop["id"] for stop in first["stops"]]
+    answer = await robot.http.put(PATH, json={"engaged": False, "stops": seen})
+    assert (answer.status_code, answer.json()["engaged"]) == (200, True)
+
+    seen = [stop["id"] for stop in answer.json()["stops"]]
+    answer = await robot.http.put(PATH, json={"engaged": False, "stops": seen})
+    assert answer.json()["engaged"] is False
+
+
+async def test_a_stop_is_taken_whatever_it_says_of_others(robot: HttpRobot) -> None:
+    answer = await robot.http.put(PATH, json={"engaged": True, "stops": [{"id": 7}]})
+
+    assert answer.json()["engaged"] is True
+    assert answer.json()["ignored"][0]["pointer"] == "/stops/0"
+
+
 @pytest.mark.parametrize(
     "body",
     [
         {},
+        {"engaged": False, "stops": "all"},
+        {"engaged": False, "stops": ["x" * 101]},
+        {"engaged": False, "stops": ["x"] * 1_001},
         {"engaged": "perhaps"},
         {"engaged": 2},
         {"engaged": None},

@@ -12,6 +12,7 @@ from api.http.schemas.health import (
     SystemStateJson,
     read_stamp,
 )
+from domain.computers import ComputerName, StopId, StopView
 from domain.errors import InvalidValueError
 from domain.inputs import Reading
 from domain.snapshot import EmergencyStopView
@@ -67,7 +68,31 @@ def test_a_released_emergency_stop_has_nobody_who_pressed_it() -> None:
         "reason": None,
         "since_at": None,
         "standstill_at": None,
+        "stops": [],
+        "waits_for": (),
+        "not_heard": (),
     }
+
+
+def test_an_engaged_emergency_stop_says_on_which_computers_it_is() -> None:
+    arm, base = ComputerName("arm"), ComputerName("base")
+    stops = (
+        StopView(StopId("arm-1"), arm, "ada", "a child", seconds(1)),
+        StopView(StopId("stop-7"), None, "bert", "me too", seconds(2)),
+    )
+    view = EmergencyStopView(True, "ada", "a child", seconds(1), None, stops, (arm,), (base,))
+
+    shown = EmergencyStopJson.of(view, CLOCK).model_dump()
+
+    assert shown["stops"][0] == {
+        "id": "arm-1",
+        "device": "arm",
+        "by": "ada",
+        "reason": "a child",
+        "since_at": "2026-01-01T00:00:01.000Z",
+    }
+    assert shown["stops"][1]["device"] is None
+    assert (shown["waits_for"], shown["not_heard"]) == (("arm",), ("base",))
 
 
 @pytest.mark.parametrize(

@@ -20,12 +20,12 @@ def test_what_has_not_changed_is_left_out_of_a_frame() -> None:
     }
 
 
-def test_what_is_left_out_is_not_null_except_for_what_there_may_not_be() -> None:
+def test_what_is_left_out_is_not_null_except_for_a_task_that_is_over() -> None:
     nullable = [
         name for name, schema in SCHEMA["properties"].items() if {"type": "null"} in kinds(schema)
     ]
 
-    assert nullable == ["this_device", "task"]
+    assert nullable == ["task"]
     assert all("default" not in schema for schema in SCHEMA["properties"].values())
 
 
