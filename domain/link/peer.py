@@ -326,7 +326,7 @@ class Peer:
         return Heard.LEASE if begins else Heard.NEWS
 
     def _end_former(self) -> None:
-        """End the stops of processes that were dealt with before: this one tells which there are."""
+        """End the stops of processes that were dealt with before; this one tells its own."""
         for process in self._former:
             if process != self.incarnation:
                 self.stops.replace(process)
