@@ -177,8 +177,11 @@ class DeviceLink:
             self.drops.count(Drop.OLD)
             return
         refusal = self._orders.find_refusal(order, self._session)
-        if not self._supervisor.lease.is_held:
+        lease = self._supervisor.lease
+        if not lease.is_held:
             refusal = f"device {self._own.name} was cut off from the supervisor"
+        elif not lease.was_sent_lately(order.heard_seq, now):
+            refusal = refusal or "it was on its way for too long"
         if refusal is None:
             self._orders.take(order)
             gathering.give(OrderReceived(order.command))

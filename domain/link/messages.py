@@ -157,6 +157,9 @@ class NodeOrder:
     seq: int
     session: Session
     command: NodeCommand
+    heard_seq: int = 0
+    """Highest `seq` of a beat of the device: it knows when it sent that, and so how old the command
+    is at most. Commands may be held up while beats get through."""
 
 
 Message: TypeAlias = Beat | Report | NodeOrder

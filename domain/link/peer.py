@@ -112,6 +112,8 @@ class Peer:
         self._settings = settings
         self._others = Others(settings.lost)
         self._former = deque[Incarnation](maxlen=_MAX_FORMER)
+        self._began_at = start
+        """When the process that is dealt with was heard first."""
         self._acknowledged = 0
         """Version of our stops that it has taken in."""
 
@@ -201,7 +203,7 @@ class Peer:
         if lives and other.proven_after is None:
             other.proven_after = self.lease.next_seq - 1
         if refusal is None and (self.incarnation is None or self.lease.is_silent(now)):
-            self._adopt(beat.incarnation)
+            self._adopt(other)
             return self._hear_incumbent(beat, now, lives=lives)
         # Whoever it is: a stop is taken.
         stops = beat.stops
@@ -309,16 +311,16 @@ class Peer:
             return Refusal(SECOND_SUPERVISOR, "another supervisor is followed")
         return Refusal(DEVICE_CONFLICT, f"another process is device {self.name}")
 
-    def _adopt(self, process: Incarnation) -> None:
+    def _adopt(self, other: Other) -> None:
         """Deal with another process from now on."""
         if self.incarnation is not None:
             self._former.append(self.incarnation)
-        self.incarnation = process
+        self.incarnation, self._began_at = other.incarnation, other.first_heard_at
         self.heard_seq = self._acknowledged = 0
         self.refused_by = None
         self.releases.clear()
         self.lease.forget()
-        self._others.forget(process)
+        self._others.forget(other.incarnation)
 
     def _hear_incumbent(self, beat: Beat, now: Instant, *, lives: bool) -> Heard:
         if beat.seq <= self.heard_seq:
@@ -346,13 +348,17 @@ class Peer:
         self.stops.take(
             beat.incarnation, beat.stops_version, beat.stops, now, lives=lives, is_dealt_with=True
         )
+        if self.lease.is_held:
+            # What was on its way when its process ended is heard a little later.
+            until = self._began_at + self._settings.lost
+            self.stops.replace_those_before(beat.incarnation, until, now)
         self._drop_done_releases(beat.incarnation)
         if lives:
             self._refuse_who_lives(beat.heard_seq)
         return Heard.LEASE if begins else Heard.NEWS
 
     def _end_former(self) -> None:
-        """End the stops of processes that were replaced: this one tells which there are."""
+        """End the stops of processes that were dealt with before; this one tells its own."""
         for process in self._former:
             if process != self.incarnation:
                 self.stops.replace(process)

@@ -51,6 +51,7 @@ class _StopsOf:
     """What one process says of its stops."""
 
     def __init__(self) -> None:
+        self.heard_at: Instant = 0
         self.version = -1
         self.stops: dict[StopId, PeerStop] = {}
 
@@ -66,9 +67,9 @@ class HeardStops:
     """The stops that are engaged on another computer, by the process that says so.
 
     Anybody who answers by its name can engage one. A stop ends when its own process no longer has
-    it, or when that process was replaced by another one that is dealt with: what a store did not
-    bring back is not engaged there. A stop of a process that is neither dealt with nor heard any
-    more is ended by a person who names it.
+    it, or when another one that is dealt with came after that process: what a store did not bring
+    back is not engaged there. A stop of a process that ran beside the one that is dealt with, and
+    is no longer heard, is ended by a person who names it.
     """
 
     def __init__(self) -> None:
@@ -113,6 +114,7 @@ class HeardStops:
             is_dealt_with: Whether it is the one that answers for its computer.
         """
         known = self._by.get(process) or _StopsOf()
+        known.heard_at = now
         if version <= known.version:
             return
         said = tuple(stops)[:MAX_STOPS]
@@ -133,6 +135,20 @@ class HeardStops:
         replaced = self._by.pop(process, None)
         if replaced is not None:
             self._ended.extend(replaced.stops)
+
+    def replace_those_before(self, process: Incarnation, until: Instant, now: Instant) -> None:
+        """End all stops of processes that came before the one that is dealt with.
+
+        Args:
+            process: That one.
+            until: A process that was heard later than that ran beside it.
+            now: The current time; nothing is judged before `until`.
+        """
+        if len(self._by) == 1 or now < until:
+            return
+        for other, of in list(self._by.items()):
+            if other != process and of.heard_at < until:
+                self.replace(other)
 
     def end(self, process: Incarnation, stops: Iterable[StopId]) -> None:
         """End stops of a process that nobody can ask, and that a person names."""
