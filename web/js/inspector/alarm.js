@@ -79,11 +79,11 @@ class Alarm extends HTMLElement {
     this.#fillBody();
   }
 
-  #showHead(error, below, { signals, parts }) {
+  #showHead(error, below, { signals, parts, devices }) {
     const { part, state } = error;
     // A root is as urgent as the worst that follows from it.
     const { severity } = worseBelow(error, below) ?? error;
-    this.#path = `${part === null ? "" : partPath(parts[part] ?? { kind: "node", name: part })}/errors/${encodeURIComponent(error.error)}`;
+    this.#path = `${part === null ? "" : partPath(parts[part] ?? { kind: devices[part] ? "device" : "node", name: part })}/errors/${encodeURIComponent(error.error)}`;
     setAttribute(this, "data-state", state);
     setAttribute(this, "data-severity", severity);
     showShape(this.shape, severity, isOn(error));
@@ -165,7 +165,7 @@ class Alarm extends HTMLElement {
     setAttribute(this.shelve, "hidden", until !== null || (!isOn(error) && !error.chattering));
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
-    setAttribute(this.link, "hidden", part === null);
+    setAttribute(this.link, "hidden", part === null || this.#shown.view.state.devices[part] !== undefined);
     if (part !== null) setText(this.link, `Show ${part.length > LONG ? "the part" : part}`);
     setAttribute(this.moment, "hidden", !since);
     if (until !== null) this.form?.close();
