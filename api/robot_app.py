@@ -97,6 +97,7 @@ def _resources() -> list[BaseRoute]:
     router = APIRouter(responses=_A_PROBLEM)
     for resource in _RESOURCES:
         router.include_router(resource)
+    router.include_router(announcing.part_router, prefix="/devices", tags=["devices"])
     for prefix in ("systems", "nodes"):
         of_parts = (
             announcing.part_router,

@@ -13,7 +13,7 @@ from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
-from domain.reaction_terms import Arm
+from domain.reaction_terms import Arm, ReactionState
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -219,8 +219,11 @@ class PeerStops:
 
     computer: ComputerName
     stops: tuple[PeerStop, ...]
-    is_all: bool = True
-    """False: whoever said so is not dealt with (yet); what was known before stays, too."""
+    ended: tuple[StopId, ...] | None = None
+    """Those that ended; what is in neither stays as it was known. None: all but `stops` ended.
+
+    Whoever is not dealt with, or not yet, can engage a stop, but end none except its own.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,6 +233,16 @@ class StopsReleased:
     stops: tuple[StopId, ...]
     """Those that its person saw; any other stays engaged."""
     computer: ComputerName
+
+
+@dataclass(frozen=True, slots=True)
+class ReactionReport:
+    """A device tells how a reaction stands that it decides about."""
+
+    part: PartName
+    reaction: str
+    state: ReactionState
+    """Idle, acting or exhausted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -465,6 +478,7 @@ Input: TypeAlias = (
     | SupervisorStatus
     | PeerStops
     | StopsReleased
+    | ReactionReport
     | OrderReceived
     | Restored
 )

@@ -107,7 +107,7 @@ class Supervision:
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
-        reactions = reactions_of(model, self.conditions, start)
+        reactions = reactions_of(model, self.conditions, start, settings.reactions_of_devices)
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
         self._reactions = self._reactions_by(displacing, reactions, guards, start)

@@ -76,6 +76,8 @@ def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
     Raises:
         UnknownPartError: There is no part of that name and kind; the error has a hint.
     """
+    if request.url.path.startswith("/devices/"):
+        return _known_device(part, supervisor)
     kind, known = _kind(request), known_of_kind(request, supervisor)
     name = part_name(part)
     if name in known:
@@ -87,6 +89,14 @@ def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
         raise UnknownPartError.of_other_kind(name, kind, _hint(supervisor.model, kind, name, path))
     hint = _hint(supervisor.model, kind, name, request.url.path)
     raise UnknownPartError(kind, name, tuple(islice(known, 21)), hint)
+
+
+def _known_device(name: str, supervisor: Supervisor) -> PartName:
+    """Return a device, whose errors are named as those of parts are."""
+    devices = supervisor.core.devices()
+    if name not in devices:
+        raise UnknownPartError("device", name, tuple(devices))
+    return PartName(name)
 
 
 PartDep = Annotated[PartName, Depends(_part)]

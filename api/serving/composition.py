@@ -14,12 +14,13 @@ from api.serving.computers import make_link
 from api.serving.data_folder import MEMORY, data_folder, robot_name
 from api.serving.misuse import MisuseError
 from api.simulation.simulation_job import SimulatedParts
+from domain.errors import UnknownDeviceError
 from domain.simulation.mock_signals import MockSignals
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
-from service.files.computer_share import ComputerShare, UnknownDeviceError, share_of
+from service.files.computer_share import ComputerShare, share_of
 from service.files.model_file import LoadedModel, load_model, with_signals
 from service.files.robot_file import (
     RobotSettings,

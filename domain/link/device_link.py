@@ -3,9 +3,17 @@
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from domain.commands import ActAlone, AnswerOrder, AskRelease, LinkCommand, NodeCommand, TellStops
+from domain.commands import (
+    ActAlone,
+    AnswerOrder,
+    AskRelease,
+    LinkCommand,
+    NodeCommand,
+    TellReaction,
+    TellStops,
+)
 from domain.computers import SUPERVISOR, ComputerName, DeviceState, Incarnation, Session
-from domain.inputs import NodeAnswer, OrderReceived, SupervisorStatus
+from domain.inputs import NodeAnswer, OrderReceived, ReactionReport, SupervisorStatus
 from domain.link.drops import Drop, Drops
 from domain.link.gathering import Gathering
 from domain.link.messages import Beat, Message, NodeOrder, Terms, Told
@@ -120,6 +128,8 @@ class DeviceLink:
                 self.peers.tell(command, now, gathering)
             case AnswerOrder():
                 self._answer(command, now)
+            case TellReaction(part=part, reaction=reaction, state=state):
+                self._say(ReactionReport(part, reaction, state), now)
             case ActAlone(autonomous=autonomous) if autonomous is not self._autonomous:
                 self._autonomous = autonomous
                 self.peers.beat((self._supervisor,), now, gathering)

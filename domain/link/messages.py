@@ -18,6 +18,7 @@ from domain.inputs import (
     ErrorReport,
     NodeAnswer,
     NodeReport,
+    ReactionReport,
     Readings,
     SourceFault,
 )
@@ -96,8 +97,16 @@ class Beat:
     refused: tuple[Refused, ...] = ()
 
 
-Told: TypeAlias = NodeReport | NodeAnswer | Readings | SourceFault | ErrorReport | CheckpointReport
-"""What a device tells the supervisor of its nodes and signals."""
+Told: TypeAlias = (
+    NodeReport
+    | NodeAnswer
+    | Readings
+    | SourceFault
+    | ErrorReport
+    | CheckpointReport
+    | ReactionReport
+)
+"""What a device tells the supervisor of its nodes, signals and reactions."""
 
 
 @dataclass(frozen=True, slots=True)

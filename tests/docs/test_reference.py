@@ -62,6 +62,7 @@ from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import seconds
 from tests.support.core_robot import CoreRobot
 from tests.support.device_robot import DeviceRobot, offline
+from tests.support.following_robot import FollowingRobot
 from tests.support.good import GOOD
 from tests.support.guarded_model import guarded_model
 from tests.support.http_robot import ACTUATION
@@ -364,6 +365,13 @@ def a_device_that_is_cut_off() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_reaction_on_a_device() -> list[RecordedEvent]:
+    """A device tells that a reaction acts which it decides about."""
+    robot = FollowingRobot()
+    robot.hear("acting")
+    return robot.events
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -416,6 +424,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_lost_arm,
         a_carrier_that_reacts,
         a_device_that_is_cut_off,
+        a_reaction_on_a_device,
         a_wait,
         a_lost_device,
         a_step_left_out,

@@ -95,6 +95,7 @@ SHUTDOWN = {"transition": "shutdown"}
 
 ACTUATOR = {"part": "actuation"}
 BASE = {"part": "drive_base"}
+LOST_ARM = {"part": "arm", "error": "LOST"}
 ARM = {"part": "manipulator"}
 BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
@@ -209,6 +210,14 @@ _HEALTH = (
         then_s=1,
     ),
     Asked("GET /devices", "A robot of one computer"),
+    Asked("POST /devices/{part}/errors/{error}/acknowledge", "There is no such device", LOST_ARM),
+    Asked(
+        "PUT /devices/{part}/errors/{error}/shelf",
+        "There is no such device",
+        LOST_ARM,
+        body={"for_s": 600, "reason": "its battery is being changed"},
+    ),
+    Asked("DELETE /devices/{part}/errors/{error}/shelf", "There is no such device", LOST_ARM),
     Asked("GET /monitors", "How fast the battery runs down"),
     Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
     Asked("GET /errors", "Those that are on", query={"active": "true"}),
