@@ -58,9 +58,10 @@ class RobotOfComputers:
         """Start a device; without a folder it remembers nothing."""
         return self._started(device(name, *self._options(arguments)))
 
-    def all(self) -> tuple["Computer", "Computer", "Computer"]:
-        """Start the supervisor, the base and the arm, all at once."""
-        starts = (self.supervisor, partial(self.device, "base"), partial(self.device, "arm"))
+    def all(self, *arguments: str) -> tuple["Computer", "Computer", "Computer"]:
+        """Start the supervisor with its arguments, the base and the arm, all at once."""
+        supervisor = partial(self.supervisor, *arguments)
+        starts = (supervisor, partial(self.device, "base"), partial(self.device, "arm"))
         with ThreadPoolExecutor() as threads:
             supervisor, base, arm = threads.map(lambda start: start(), starts)
         return supervisor, base, arm
