@@ -8,6 +8,7 @@ from domain.identifiers import GoalId
 from domain.lifecycle import Transition
 from domain.parameters import Parameters
 from domain.paths.path import Path
+from domain.reaction_terms import ReactionState
 from domain.state_and_mode import PartName
 from domain.vehicle import DriveCommand, VehicleState
 
@@ -110,6 +111,16 @@ class ActAlone:
     autonomous: bool
 
 
+@dataclass(frozen=True, slots=True)
+class TellReaction:
+    """Tell the supervisor how a reaction stands that this device decides about."""
+
+    part: PartName
+    reaction: str
+    state: ReactionState
+    """Idle, acting or exhausted."""
+
+
 NodeCommand: TypeAlias = AskTransition | AskParameters | AskFacts
-LinkCommand: TypeAlias = TellStops | AskRelease | AnswerOrder | ActAlone
+LinkCommand: TypeAlias = TellStops | AskRelease | AnswerOrder | ActAlone | TellReaction
 Command: TypeAlias = NodeCommand | Drive | SendGoal | PreemptGoal | LinkCommand

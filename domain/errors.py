@@ -26,6 +26,7 @@
     |   +-- TooManyHoldsError
     |   +-- OwnedBySupervisorError
     |   +-- OfflineError
+    |   +-- ActsElsewhereError
     +-- BackendUnavailableError       the backend is down: no node can be reached
     +-- StorageDegradedError          storage cannot be written, or not be read
 
@@ -353,6 +354,16 @@ class OfflineError(RefusedError):
             f"{what} is commanded by the supervisor, which {device} cannot hear: {why}"
         )
         self.hint = "restore the connection; stop, hold, deactivate are possible here"
+
+
+class ActsElsewhereError(RefusedError):
+    """A request about a reaction that a device decides about."""
+
+    code = "ACTS_ELSEWHERE"
+
+    def __init__(self, reaction: str, device: str) -> None:
+        super().__init__(f"reaction {reaction} acts on device {device}, whatever is said here")
+        self.hint = f"arm or acknowledge it on the page of {device}"
 
 
 class BackendUnavailableError(PilothouseError):

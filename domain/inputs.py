@@ -13,7 +13,7 @@ from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
-from domain.reaction_terms import Arm
+from domain.reaction_terms import Arm, ReactionState
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -233,6 +233,16 @@ class StopsReleased:
     stops: tuple[StopId, ...]
     """Those that its person saw; any other stays engaged."""
     computer: ComputerName
+
+
+@dataclass(frozen=True, slots=True)
+class ReactionReport:
+    """A device tells how a reaction stands that it decides about."""
+
+    part: PartName
+    reaction: str
+    state: ReactionState
+    """Idle, acting or exhausted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -468,6 +478,7 @@ Input: TypeAlias = (
     | SupervisorStatus
     | PeerStops
     | StopsReleased
+    | ReactionReport
     | OrderReceived
     | Restored
 )

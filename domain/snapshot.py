@@ -63,6 +63,8 @@ class Because(StrEnum):
     RULE = "rule"
     INVARIANT = "invariant"
     REACTION = "reaction"
+    LOCAL = "local"
+    """A reaction that acts on the device of its part, where the supervisor only follows it."""
 
 
 @dataclass(frozen=True, slots=True)

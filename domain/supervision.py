@@ -25,6 +25,7 @@ from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.announcing import Announcing
+from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.error_causes import ErrorCauses
@@ -114,7 +115,7 @@ class Supervision:
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
-        reactions = reactions_of(model, self.conditions, start)
+        reactions = reactions_of(model, self.conditions, start, settings.reactions_of_devices)
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         displacing = Displacing(parts, self._changing, outbox)
         self._reactions = self._reactions_by(displacing, reactions, guards, start)
@@ -163,14 +164,8 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
-        propagation = Propagation(
-            health.error_list,
-            self.conditions,
-            errors.unheard,
-            outbox,
-            start,
-            self._devices.unheard,
-        )
+        unheard = {UNREACHABLE: errors.unheard, LOST: self._devices.unheard}
+        propagation = Propagation(health.error_list, self.conditions, unheard, outbox, start)
         return (
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
@@ -198,7 +193,8 @@ class Supervision:
 
     def _devices_by(self, settings: SupervisionSettings, start: Instant) -> Devices:
         within, errors = settings.devices_heard_within, self._health.error_list
-        return Devices(settings.devices, within, self._parts, errors, self._outbox, start)
+        parts, stop = self._parts, self._emergency_stop
+        return Devices(settings.devices, within, parts, errors, stop, self._outbox, start)
 
     def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
         if settings is None:

@@ -30,6 +30,8 @@ class SupervisionSettings:
     """Of a device, which follows a supervisor; None: this computer follows nobody."""
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)
     """Computers that own nodes; empty: all nodes are those of this one."""
+    reactions_of_devices: Mapping[str, ComputerName] = field(default_factory=dict)
+    """By name of a reaction, the device that decides about it: all that it rests on is there."""
     devices_heard_within: Duration = seconds(1.5)
     """How long rules, fallbacks and reactions wait for devices after a start."""
 

@@ -8,7 +8,7 @@ from domain.onboard import Onboard
 from domain.parts.system_model import SmhModel
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
-from service.files.computer_share import share_of
+from service.files.computer_share import reactions_of_devices, share_of
 from service.files.robot_file import RobotSettings
 
 
@@ -23,6 +23,7 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
     share = share_of(model, robot)
     own = robot.device or SUPERVISOR
     devices = {} if robot.device else {each.name: each for each in robot.to_device_settings(model)}
+    elsewhere = {} if robot.device else reactions_of_devices(model, robot)
     model, robot = share.model, share.robot
     limits = robot.to_vehicle_limits()
     settings = SupervisionSettings(
@@ -34,6 +35,7 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         checkpoints=robot.to_checkpoint_settings(),
         peers=_peers(robot.devices, own),
         devices=devices,
+        reactions_of_devices=elsewhere,
         devices_heard_within=robot.link.lost,
         lead=robot.to_lead_settings(),
     )

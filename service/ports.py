@@ -19,6 +19,7 @@ from domain.inputs import (
     NodeReport,
     OrderReceived,
     PeerStops,
+    ReactionReport,
     Readings,
     ReportBacklog,
     SourceFault,
@@ -42,6 +43,7 @@ BackendMessage: TypeAlias = (
     | PeerStops
     | StopsReleased
     | OrderReceived
+    | ReactionReport
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 

@@ -20,6 +20,7 @@ from domain.commands import (
     Drive,
     PreemptGoal,
     SendGoal,
+    TellReaction,
     TellStops,
 )
 from domain.errors import PilothouseError
@@ -256,6 +257,8 @@ def _command_words(command: Command) -> str:
             return f"{computer} is asked to release {', '.join(ids)}"
         case AnswerOrder(node=node, accepted=accepted):
             return f"the supervisor is told that {node} {'accepts' if accepted else 'rejects'}"
+        case TellReaction(reaction=reaction, state=state):
+            return f"the supervisor is told that reaction {reaction} is {state}"
         case ActAlone(autonomous=autonomous):
             return f"this device {'acts' if autonomous else 'no longer acts'} on its own"
 

@@ -22,6 +22,7 @@ from api.http.schemas.problem import BodyFault, Problem
 from api.http.stop_asked import StopTakenError
 from domain.conditions.lexer import ConditionSyntaxError
 from domain.errors import (
+    ActsElsewhereError,
     BackendUnavailableError,
     BlockedError,
     FarStartError,
@@ -108,6 +109,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     TooManyHoldsError: HTTPStatus.CONFLICT,
     OwnedBySupervisorError: HTTPStatus.CONFLICT,
     OfflineError: HTTPStatus.CONFLICT,
+    ActsElsewhereError: HTTPStatus.CONFLICT,
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,

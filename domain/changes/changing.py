@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import islice
 
+from domain.actor import Actor
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.guards import Guards
@@ -190,10 +191,16 @@ class Changing(Concern):
             self._changes.forget_targets(asked)
             self._restoring.forget(asked)
 
-    def drop_all(self, why: str, now: Instant) -> None:
-        """Cancel all changes, and forget all requested targets; steps in flight arrive."""
+    def drop_all(self, why: str, now: Instant, besides: Collection[Actor]) -> None:
+        """Cancel all changes, and forget all requested targets; steps in flight arrive.
+
+        Args:
+            why: The reason, in words.
+            now: The current time.
+            besides: Those whose changes go on.
+        """
         for change in self._changes.all():
-            if not change.is_over:
+            if not change.is_over and change.request.actor not in besides:
                 self._waiting.drop(change.id)
                 self._changes.cancel(change.id, now, why)
         self.forget_targets(self._parts.model.parts)

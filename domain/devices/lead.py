@@ -9,7 +9,7 @@ from domain.actor import Actor
 from domain.changes.admission import part_of
 from domain.changes.changing import Changing
 from domain.changes.pursuit import request_towards
-from domain.commands import ActAlone, AnswerOrder, AskFacts
+from domain.commands import ActAlone, AnswerOrder, AskFacts, TellReaction
 from domain.computers import DeviceState
 from domain.concern import Concern, Takers
 from domain.devices.lead_view import LeadView, Word
@@ -46,6 +46,7 @@ from domain.inputs import (
 from domain.lifecycle import Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
+from domain.reaction_terms import ReactionState
 from domain.reactions.reactions import Reactions
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
@@ -54,6 +55,7 @@ MAX_UNANSWERED = 10_000
 """Orders that a node has yet to answer; of more, the oldest are forgotten. The supervisor has its
 own deadlines."""
 
+_TOLD = frozenset({ReactionState.ACTING, ReactionState.EXHAUSTED})
 _FOLLOWED = frozenset({DeviceState.CONNECTED, DeviceState.LATE})
 
 
@@ -103,7 +105,11 @@ class Lead(Concern):
         self._unanswered: dict[int, _Order] = {}
         """By our number of the request."""
         self._view: LeadView | None = None
+        self._told: dict[str, ReactionState] = {}
+        """By reaction, how the supervisor was told that it stands."""
         reactions.let_act(acting=False)
+        # What the supervisor requested is not a target here.
+        reactions.ask_elsewhere()
 
     @property
     def takes(self) -> Takers:
@@ -127,6 +133,12 @@ class Lead(Concern):
         if self._acts_at is not None and self._acts_at <= now:
             self._acts_at = None
             self._act_alone(now)
+
+    def settle(self, now: Instant) -> bool:
+        """Tell the supervisor which reactions act, if that changed."""
+        if self._outbox.reactions:
+            self._tell_reactions(all_of_them=False)
+        return False
 
     # --- whom it follows -------------------------------------------------------------------------
 
@@ -165,11 +177,20 @@ class Lead(Concern):
         was_alone = self._word is Word.DEVICE
         self._acts_at = None
         self._set_word(Word.SUPERVISOR, now)
-        self._changing.drop_all("the supervisor is back", now)
-        self._reactions.let_act(acting=False)
+        # What a reaction moves goes on, since the reaction does.
+        self._changing.drop_all("the supervisor is back", now, besides=self._reactions.actors)
+        self._reactions.let_act(acting=True)
+        self._tell_reactions(all_of_them=True)
         if was_alone:
             self._outbox.emit(DeviceFollowsAgain(self._settings.device))
             self._outbox.command(ActAlone(False))
+
+    def _tell_reactions(self, *, all_of_them: bool) -> None:
+        for view in self._reactions.views():
+            state = view.state if view.state in _TOLD else ReactionState.IDLE
+            if all_of_them or self._told.get(view.reaction, ReactionState.IDLE) is not state:
+                self._told[view.reaction] = state
+                self._outbox.command(TellReaction(view.part, view.reaction, state))
 
     def _set_word(self, word: Word, now: Instant) -> None:
         self._word, self._since, self._view = word, now, None

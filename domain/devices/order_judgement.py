@@ -5,10 +5,20 @@ from dataclasses import replace
 from domain.changes.changing import Changing
 from domain.commands import AskFacts, AskParameters, AskTransition, NodeCommand
 from domain.health.health import Health
-from domain.lifecycle import Transition
+from domain.lifecycle import LifecycleState, Transition
+from domain.parameters import same_value
 from domain.parts.parts import Parts
+from domain.parts.targets import OF_REACTIONS
+from domain.state_and_mode import DEFAULT_MODE, StateAndMode
 
 SET_PARAMETERS = "set_parameters"
+
+_S = LifecycleState
+_KEPT_FROM = {
+    Transition.ACTIVATE: (_S.INACTIVE, _S.UNCONFIGURED, _S.FINALIZED),
+    Transition.CONFIGURE: (_S.UNCONFIGURED, _S.FINALIZED),
+}
+"""By transition, the targets that it would lead away from; one towards rest always passes."""
 
 
 class OrderJudgement:
@@ -33,10 +43,33 @@ class OrderJudgement:
         if is_activation and self._health.is_stopped:
             why = "; ".join(reason.message for reason in self._health.stop_reasons)
             return f"{command.node} is not activated while ESTOP is active: {why}"
+        local = self._against_reaction(command)
+        if local is not None:
+            return local
         step = self._changing.step_in_flight(command.node)
         if step is not None:
             return f"{command.node} is busy on request of the device: {step.action_name}"
         return None
+
+    def _against_reaction(self, command: AskTransition | AskParameters) -> str | None:
+        """Return that a reaction keeps a node where it is; None: none does, or it may rest."""
+        node = command.node
+        target = self._parts.view(node).effective_target
+        if target is None or target.because not in OF_REACTIONS:
+            return None
+        if isinstance(command, AskTransition):
+            is_against = target.state in _KEPT_FROM.get(command.transition, ())
+        else:
+            wanted = self._parts.model.nodes[node].modes.get(target.mode or DEFAULT_MODE, {})
+            is_of_mode = target.state is LifecycleState.ACTIVE
+            is_against = is_of_mode and any(
+                name in wanted and not same_value(wanted[name], value)
+                for name, value in command.values.items()
+            )
+        if not is_against:
+            return None
+        kept_in = StateAndMode(target.state, target.mode).label
+        return f"reaction {target.reaction} keeps {node} in {kept_in}"
 
 
 def action_of(command: NodeCommand) -> str:

@@ -280,6 +280,10 @@ def _why_not_own(reaction: DeclaredReaction, own: SubModel, vocabulary: Vocabula
     """Return why a reaction of an own part is the supervisor's; None: it is the device's."""
     if reaction.action in _OF_THE_TASK:
         return f"its action {reaction.action} is about the task, which is the supervisor's"
+    if reaction.action is Action.TELL:
+        return "it only tells, as the supervisor does"
+    if reaction.action is Action.RESTART:
+        return "it leads back to a target, which the supervisor knows"
     foreign = _foreign(reaction.when, vocabulary)
     if foreign is not None:
         return f"{foreign} is not its own"

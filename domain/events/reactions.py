@@ -3,8 +3,24 @@
 from dataclasses import dataclass
 
 from domain.events.event import Event, because
-from domain.reaction_terms import Action, Arm
+from domain.reaction_terms import Action, Arm, ReactionState
 from domain.state_and_mode import PartName
+
+
+@dataclass(frozen=True, slots=True)
+class ReactionReported(Event):
+    """A device tells how a reaction stands that it decides about."""
+
+    kind = "reaction.reported"
+    is_input = True
+    is_notable = False
+
+    part: PartName
+    reaction: str
+    state: ReactionState
+
+    def _words(self) -> str:
+        return f"the device of {self.part} tells that reaction {self.reaction} is {self.state}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,14 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TypeVar
 
-from domain.inputs import ErrorReport, NodeReport, Reading, Readings, SourceFault
+from domain.inputs import (
+    ErrorReport,
+    NodeReport,
+    ReactionReport,
+    Reading,
+    Readings,
+    SourceFault,
+)
 from domain.lifecycle import LifecycleState
 from domain.link.messages import Told
 from domain.parameters import Parameters, same_value
@@ -19,7 +26,7 @@ _MAX_OTHERS = 4_096
 
 
 class Facts:
-    """What was reported last: of each node, of each signal by its source, and of each error.
+    """What was reported last: of nodes, signals by their sources, errors and reactions.
 
     Answers and checkpoints are of a moment, and are not kept.
     """
@@ -31,6 +38,7 @@ class Facts:
         """By source and signal, with one reading each, and when it came."""
         self._faults: dict[tuple[str, str], SourceFault] = {}
         self._errors: dict[tuple[PartName | None, str], ErrorReport] = {}
+        self._reactions: dict[str, ReactionReport] = {}
 
     def note(self, told: Told, now: Instant) -> None:
         """Note what was reported."""
@@ -51,6 +59,9 @@ class Facts:
                 error = (told.part, told.error)
                 if error in self._errors or len(self._errors) < _MAX_OTHERS:
                     self._errors[error] = told
+            case ReactionReport():
+                if told.reaction in self._reactions or len(self._reactions) < _MAX_OTHERS:
+                    self._reactions[told.reaction] = told
             case _:
                 pass
 
@@ -67,6 +78,7 @@ class Facts:
             yield replace(readings, items=(replace(reading, stamp=stamp),))
         yield from self._faults.values()
         yield from self._errors.values()
+        yield from self._reactions.values()
 
     def reading(self, source: str, signal: str) -> tuple[Reading, Instant] | None:
         """Return the last reading of a signal from a source, and when it came; None: none."""
@@ -74,12 +86,14 @@ class Facts:
         return None if known is None else (known[0].items[0], known[1])
 
     def __contains__(self, told: Told) -> bool:
-        """Tell whether a fault of a source, or a report of an error, is the last one."""
+        """Tell whether a fault of a source, an error or a reaction is as it was reported last."""
         match told:
             case SourceFault():
                 return self._faults.get((told.source, told.signal)) == told
             case ErrorReport():
                 return self._errors.get((told.part, told.error)) == told
+            case ReactionReport():
+                return self._reactions.get(told.reaction) == told
             case _:
                 return False
 

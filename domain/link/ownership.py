@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from domain.inputs import ErrorReport, Readings, SourceFault
+from domain.inputs import ErrorReport, ReactionReport, Readings, SourceFault
 from domain.link.messages import Told
 from domain.link.settings import Owned
 from domain.timebase import Instant
@@ -31,7 +31,7 @@ class Ownership:
                 return replace(told, items=own) if own else None
             case SourceFault():
                 return told if told.signal in self._signals else None
-            case ErrorReport():
+            case ErrorReport() | ReactionReport():
                 return told if told.part in self._parts else None
             case _:
                 return told if told.node in self.nodes else None

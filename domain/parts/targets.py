@@ -20,6 +20,9 @@ _REST = (
 _RANK = {because: rank for rank, because in enumerate(Because)}
 """Who prevails over whom; among equals, who came later."""
 
+OF_REACTIONS = frozenset({Because.REACTION, Because.LOCAL})
+"""What reactions set, wherever they act."""
+
 _Shown = dict[tuple[LifecycleState, ModeName | None], EffectiveTarget]
 
 
@@ -51,7 +54,7 @@ class Displacement:
     @property
     def is_firm(self) -> bool:
         """Tell whether no request ends it: a reaction that acts."""
-        return self.because is Because.REACTION and not self.is_over
+        return self.because in OF_REACTIONS and not self.is_over
 
     @property
     def rank(self) -> tuple[int, int]:
@@ -215,7 +218,7 @@ class Targets:
         target = displaced.targets.get(part)
         if target is None:
             return False
-        is_of_reaction = displaced.because is Because.REACTION
+        is_of_reaction = displaced.because in OF_REACTIONS
         return not (is_of_reaction and self._resting and self.stays_at_rest(part, target))
 
     def _note_rest(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
@@ -244,7 +247,7 @@ def _shown(displaced: Displacement, target: StateAndMode) -> EffectiveTarget:
             displaced.name if displaced.because is Because.RULE else None,
             displaced.cause,
             displaced.blockers,
-            displaced.name if displaced.because is Because.REACTION else None,
+            displaced.name if displaced.because in OF_REACTIONS else None,
         )
     return shown
 

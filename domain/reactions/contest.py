@@ -53,7 +53,12 @@ class Contest:
         """
         outcome = Outcome()
         claimed: set[PartName] = set()
-        for reaction in sorted(called, key=lambda each: -each.strength):
+        # What acts on a device already comes first.
+        for reaction in sorted(called, key=lambda each: (each.elsewhere is None, -each.strength)):
+            if reaction.elsewhere is not None:
+                self._follow(reaction, outcome)
+                claimed.update(own.part for own in outcome.claiming)
+                continue
             if reaction.arm is Arm.DISARMED:
                 continue
             standing = self._standing(reaction, outcome, is_exhausted, now)
@@ -66,6 +71,14 @@ class Contest:
                 claimed.add(reaction.part)
                 outcome.claiming.append(reaction)
         return outcome
+
+    @staticmethod
+    def _follow(reaction: Reaction, outcome: Outcome) -> None:
+        """Let a reaction stand as it does on the device that decides about it."""
+        outcome.standings[reaction] = Standing(reaction.reported)
+        if reaction.reported is ReactionState.ACTING and reaction.targets:
+            outcome.moving[reaction.part] = reaction
+            outcome.claiming.append(reaction)
 
     def _standing(
         self,

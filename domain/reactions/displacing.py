@@ -16,7 +16,7 @@ from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, Restored
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.parts.targets import Displacement
+from domain.parts.targets import OF_REACTIONS, Displacement
 from domain.reactions.displacer import Displacer
 from domain.reactions.kept_displacements import KeptDisplacements
 from domain.snapshot import Because
@@ -108,7 +108,7 @@ class Displacing:
         targets = {displacer.system: displacer.new_target, **goal.targets}
         system = displacer.system
         beyond = self._parts.beyond(displacer.because, displacer.strength, besides=system)
-        if displacer.because is Because.REACTION:
+        if displacer.because in OF_REACTIONS:
             stays = self._parts.stays_at_rest
             beyond = beyond | {part for part, target in targets.items() if stays(part, target)}
         if beyond:
@@ -291,6 +291,6 @@ class Displacing:
 
 def _rule_or_reaction(displacer: Displacer) -> tuple[str | None, str | None]:
     """Return its name as that of a rule, or of a reaction."""
-    if displacer.because is Because.REACTION:
+    if displacer.because in OF_REACTIONS:
         return None, displacer.name
     return displacer.name, None

@@ -36,7 +36,7 @@ class Effects:
     def restore(self, reaction: Reaction) -> None:
         """Hold again what a reaction held in an earlier run; the emergency stop is kept itself."""
         action = _action_of(reaction)
-        if action is not None:
+        if action is not None or reaction.elsewhere is not None:
             self._acting.add(reaction)
         if action is not None and action.holds:
             self._holding.add(reaction)
@@ -117,7 +117,7 @@ def _action_of(reaction: Reaction) -> Action | None:
     if not reaction.may_act:
         return None
     if reaction.state is ReactionState.ACTING:
-        return reaction.declared.action
+        return reaction.declared.action if reaction.elsewhere is None else None
     if reaction.state is ReactionState.EXHAUSTED:
         return reaction.declared.on_exhausted
     return None

@@ -9,7 +9,7 @@ from domain.events.service import NotRestored
 from domain.kept import Kept, KeptEffectiveTarget
 from domain.outbox import Outbox
 from domain.parts.system_model import SmhModel
-from domain.parts.targets import Displacement
+from domain.parts.targets import OF_REACTIONS, Displacement
 from domain.reactions.displacer import Displacer, key_of
 from domain.snapshot import Because
 from domain.state_and_mode import PartName, StateAndMode
@@ -104,7 +104,7 @@ class KeptDisplacements:
         label, part = value.target.label, value.part
         what = f"the target {label} of {part} that a rule set"
         reason = f"the model has no rule {value.rule!r} that sets it"
-        if value.because == Because.REACTION:
+        if value.because in OF_REACTIONS:
             what = f"the target {label} of {part} that a reaction set"
             reason = f"the model has no reaction {value.rule!r} that sets it"
         if value.because == Because.INVARIANT:
@@ -118,7 +118,7 @@ class KeptDisplacements:
             part: StateAndMode(kept.staying[part]) if part in kept.staying else target
             for part, target in targets_of(self._model, kept.part, kept.target).items()
             # No request takes a part out of what a reaction has set.
-            if kept.because == Because.REACTION or self._requests.of(part) <= kept.after
+            if kept.because in OF_REACTIONS or self._requests.of(part) <= kept.after
         }
         return {kept.part: kept.target, **targets}
 

@@ -52,11 +52,21 @@ class Moving:
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Displace what an earlier run had displaced; nothing moves because of that."""
-        for displacer in self._displacing.restore(restored, Because.REACTION, self._reactions, now):
+        found = [
+            displacer
+            for because in (Because.REACTION, Because.LOCAL)
+            for displacer in self._displacing.restore(
+                restored, because, self._reactions_of(because), now
+            )
+        ]
+        for displacer in found:
             assert isinstance(displacer, Reaction)
             self._displacer[displacer.part] = displacer
             is_over = displacer.state is not ReactionState.ACTING
             self._displacing.let_go(displacer, is_over=is_over)
+
+    def _reactions_of(self, because: Because) -> list[Reaction]:
+        return [reaction for reaction in self._reactions if reaction.because is because]
 
     def follow_stop(self, now: Instant, *, is_stopped: bool) -> None:
         """Note that ESTOP is active, or ends now."""
@@ -138,7 +148,8 @@ class Moving:
         ground = Ground(reaction.words, (cause,), now, reaction.event)
         self._displacing.displace(reaction, way, ground, now, instead_of=earlier)
         self._displacer[part] = reaction
-        self._displacing.set_out(reaction, way, now)
+        if reaction.elsewhere is None:
+            self._displacing.set_out(reaction, way, now)
         return True
 
     def _let_go(self, reaction: Reaction, now: Instant) -> bool:

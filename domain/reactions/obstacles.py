@@ -47,6 +47,8 @@ class Obstacles:
         self._guards = guards
         self._displacing = displacing
         self._triggers = triggers
+        self.asks_elsewhere = False
+        """Whether another computer knows what was requested, so that no target is needed."""
         self.deadlines: Deadlines[Reaction] = Deadlines()
         """When the grace of an invariant of a target ends."""
 
@@ -85,8 +87,10 @@ class Obstacles:
             return self._blocker(reaction, BACKEND_UNAVAILABLE, why)
         way = self._displacing.way_ahead(reaction)
         asked = self._parts.asked(reaction.part)
-        is_activating = reaction.new_target.state is _ACTIVE and (
-            asked is None or asked.state is not _ACTIVE
+        is_activating = (
+            reaction.new_target.state is _ACTIVE
+            and (asked is None or asked.state is not _ACTIVE)
+            and not (asked is None and self.asks_elsewhere)
         )
         if is_activating or self._displacing.would_activate(way):
             blocker = self._of_activation(reaction)

@@ -6,6 +6,7 @@ from functools import cached_property
 
 from domain.actor import Actor
 from domain.changes.plan import targets_of
+from domain.computers import ComputerName
 from domain.conditions.evaluation import Truth
 from domain.conditions.watched import WatchedConditions
 from domain.findings import Blocker
@@ -39,6 +40,10 @@ class Reaction:
     """Whether it may act, as an operator or the model says."""
     is_left: bool = False
     """Acting is left to another computer, so that it only tells when it would act."""
+    elsewhere: ComputerName | None = None
+    """The device that decides about it, and acts; None: this computer does."""
+    reported: ReactionState = ReactionState.IDLE
+    """How it stands on that device: idle, acting or exhausted."""
     state: ReactionState = ReactionState.IDLE
     since: Instant | None = None
     """Since when it stands so; None: since the start."""
@@ -91,7 +96,7 @@ class Reaction:
     @property
     def because(self) -> Because:
         """Return what kind it is."""
-        return Because.REACTION
+        return Because.REACTION if self.elsewhere is None else Because.LOCAL
 
     @property
     def system(self) -> PartName:
@@ -153,10 +158,24 @@ class Reaction:
         return targets_of(self.model, self.part, self.declared.target)
 
 
-def reactions_of(model: SmhModel, conditions: WatchedConditions, now: Instant) -> list[Reaction]:
-    """Return the reactions of a model, in the order of the file; their conditions are watched."""
+def reactions_of(
+    model: SmhModel,
+    conditions: WatchedConditions,
+    now: Instant,
+    elsewhere: Mapping[str, ComputerName] | None = None,
+) -> list[Reaction]:
+    """Return the reactions of a model, in the order of the file; their conditions are watched.
+
+    Args:
+        model: Declares them.
+        conditions: Evaluate the conditions.
+        now: The current time.
+        elsewhere: By name of a reaction, the device that decides about it; None: there is none.
+    """
     declared = [own for of_part in model.reactions.values() for own in of_part.values()]
     conditions.watch((own.when for own in declared), now)
+    deciding = elsewhere or {}
     return [
-        Reaction(own, number, model, conditions, own.arm) for number, own in enumerate(declared)
+        Reaction(own, number, model, conditions, own.arm, elsewhere=deciding.get(own.name))
+        for number, own in enumerate(declared)
     ]

@@ -6,11 +6,16 @@ an action is always what calls for it now.
 
 from collections.abc import Iterable, Iterator
 
+from domain.actor import Actor
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
 from domain.concern import Concern, Takers
-from domain.errors import UnknownReactionError
-from domain.events.reactions import ReactionAcknowledged, ReactionArmRequested
+from domain.errors import ActsElsewhereError, UnknownReactionError
+from domain.events.reactions import (
+    ReactionAcknowledged,
+    ReactionArmRequested,
+    ReactionReported,
+)
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.inputs import (
@@ -18,6 +23,7 @@ from domain.inputs import (
     ArmRequest,
     BackendStatus,
     ModeRequest,
+    ReactionReport,
     Restored,
     TransitionRequest,
 )
@@ -96,8 +102,7 @@ class Reactions(Concern):
         self._views = ReactionViews(reactions, self._budgets, self._triggers, outbox)
         self._revision: int | None = None
         """That of the conditions when they were judged last; None: all have to be."""
-        self._was_waiting = parts.awaits_devices
-        self._was_stopped = False
+        self._was_waiting = self._was_stopped = False
         self._stop_ended_at: Instant | None = None
 
     # --- what happens ----------------------------------------------------------------------------
@@ -111,6 +116,7 @@ class Reactions(Concern):
             ModeRequest: self._follow_request,
             TransitionRequest: self._follow_request,
             BackendStatus: self._follow_backend,
+            ReactionReport: self._take_report,
             Restored: self.restore,
         }
 
@@ -120,13 +126,15 @@ class Reactions(Concern):
             return
         self._triggers.begin_anew(now)
         for reaction in self._kept.restore(restored, now):
+            # Until the device says how it stands.
+            reaction.reported = reaction.state
             self._effects.restore(reaction)
             self._views.note(reaction)
         self._moving.restore(restored, now)
         self._revision = None
 
     def _take_arm(self, request: ArmRequest, now: Instant) -> None:
-        reaction = self._of(request.part, request.reaction)
+        reaction = self._of_here(request.part, request.reaction)
         told = ReactionArmRequested(reaction.part, reaction.name, request.arm, request.reason)
         self._outbox.begin(now, told, request.actor)
         if reaction.arm is request.arm:
@@ -138,7 +146,7 @@ class Reactions(Concern):
             self._triggers.forget(reaction)
 
     def _take_acknowledgement(self, request: AcknowledgeReactionRequest, now: Instant) -> None:
-        reaction = self._of(request.part, request.reaction)
+        reaction = self._of_here(request.part, request.reaction)
         self._outbox.begin(now, ReactionAcknowledged(reaction.part, reaction.name), request.actor)
         self._outbox.record_input()
         if reaction.state is ReactionState.EXHAUSTED:
@@ -147,6 +155,29 @@ class Reactions(Concern):
         self._kept.renew(reaction, now)
         self._views.note(reaction)
         self._revision = None
+
+    def _take_report(self, report: ReactionReport, now: Instant) -> None:
+        """Let a reaction stand as it does on its device; of one that is decided here, nothing."""
+        reaction = self._by_name.get(report.reaction)
+        if reaction is None or reaction.part != report.part or reaction.elsewhere is None:
+            return
+        self._outbox.begin(now, ReactionReported(report.part, report.reaction, report.state))
+        if reaction.reported is not report.state:
+            self._outbox.record_input()
+            reaction.reported = report.state
+            self._revision = None
+
+    def _of_here(self, part: PartName, name: str) -> Reaction:
+        """Return a reaction that this computer decides about.
+
+        Raises:
+            UnknownReactionError: The part has no reaction of this name.
+            ActsElsewhereError: A device decides about it.
+        """
+        reaction = self._of(part, name)
+        if reaction.elsewhere is not None:
+            raise ActsElsewhereError(reaction.name, reaction.elsewhere)
+        return reaction
 
     def _begin_afresh(self, reaction: Reaction, now: Instant) -> None:
         """Forget how often a reaction acted."""
@@ -255,13 +286,18 @@ class Reactions(Concern):
             called: list[Reaction] = []
             others: list[Reaction] = []
             for each in self._reactions:
-                is_called = self._triggers.calls_for(each) or each.is_exhausted
+                is_called = self._is_called(each)
                 (called if is_called else others).append(each)
             withdrawn = [each for each in others if self._escalations.withdraw(each)]
             for each in withdrawn:
                 self._kept.renew(each, now)
             if not withdrawn:
                 return called
+
+    def _is_called(self, reaction: Reaction) -> bool:
+        if reaction.elsewhere is not None:
+            return reaction.reported is not ReactionState.IDLE
+        return self._triggers.calls_for(reaction) or reaction.is_exhausted
 
     def _carry_out(self, outcome: Outcome, now: Instant) -> bool:
         """Let reactions begin and end; what makes a robot safer comes first."""
@@ -270,7 +306,7 @@ class Reactions(Concern):
             standing = outcome.standings.get(reaction)
             if standing is None:
                 is_pending = self._triggers.pending_since(reaction) is not None
-                is_armed = reaction.arm is not Arm.DISARMED
+                is_armed = reaction.arm is not Arm.DISARMED and reaction.elsewhere is None
                 standing = _PENDING if is_pending and is_armed else _IDLE
             reaction.kept_from = standing.kept_from
             if standing.state is not reaction.state:
@@ -302,17 +338,27 @@ class Reactions(Concern):
         reaction.state = state
         reaction.since = begun.since if state is ReactionState.PENDING and begun else now
         reaction.is_exhausted = state is ReactionState.EXHAUSTED
-        if reaction.is_in_effect:
-            self._budgets.note(reaction, now)
-            self._triggers.note_in_effect(reaction)
-        if state is ReactionState.ACTING:
-            self._escalations.begin(reaction, now)
-        elif was is ReactionState.ACTING:
-            self._escalations.end(reaction)
+        if reaction.elsewhere is None:
+            if reaction.is_in_effect:
+                self._budgets.note(reaction, now)
+                self._triggers.note_in_effect(reaction)
+            if state is ReactionState.ACTING:
+                self._escalations.begin(reaction, now)
+            elif was is ReactionState.ACTING:
+                self._escalations.end(reaction)
         if state in (ReactionState.IDLE, ReactionState.PENDING):
             self._triggers.forget(reaction)
         self._kept.renew(reaction, now)
         self._views.note(reaction)
+
+    @property
+    def actors(self) -> list[Actor]:
+        """Return in whose names reactions move parts."""
+        return [reaction.actor for reaction in self._reactions]
+
+    def ask_elsewhere(self) -> None:
+        """Note that another computer knows what was requested of the parts."""
+        self._obstacles.asks_elsewhere = True
 
     def let_act(self, *, acting: bool) -> None:
         """Let all reactions act, or only tell when they would: another computer's word counts."""

@@ -54,6 +54,7 @@ NAMES: Mapping[type, str] = {
     inputs.SupervisorStatus: "supervisor_status",
     inputs.PeerStops: "peer_stops",
     inputs.StopsReleased: "stops_released",
+    inputs.ReactionReport: "reaction_report",
     inputs.OrderReceived: "order_received",
     inputs.Restored: "restored",
     # Commands.
@@ -67,6 +68,7 @@ NAMES: Mapping[type, str] = {
     commands.AskRelease: "ask_release",
     commands.AnswerOrder: "answer_order",
     commands.ActAlone: "act_alone",
+    commands.TellReaction: "tell_reaction",
     # Messages of the link.
     messages.Beat: "beat",
     messages.Report: "report",

@@ -77,6 +77,21 @@ def share_of(model: SmhModel, robot: RobotSettings) -> ComputerShare:
     return ComputerShare(model, robot, model, robot)
 
 
+def reactions_of_devices(model: SmhModel, robot: RobotSettings) -> dict[str, ComputerName]:
+    """Return by name of a reaction the device that decides about it, since all of it is there."""
+    if not (robot.devices and model.reactions):
+        return {}
+    signals = robot.to_signal_settings()
+    return {
+        name: device.name
+        for device in robot.to_device_settings(model)
+        for declared in sub_model(
+            model, device.nodes, readable_signals(signals, device.signals)
+        ).model.reactions.values()
+        for name in declared
+    }
+
+
 def _share_of_device(model: SmhModel, robot: RobotSettings, name: ComputerName) -> ComputerShare:
     devices = {device.name: device for device in robot.to_device_settings(model)}
     if name not in devices:

@@ -101,6 +101,8 @@ BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
 
 LOW_BATTERY = {"error": "BATTERY_LOW"}
+LOST_ARM = {"part": "arm", "error": "LOST"}
+"""Of a device, which a robot of one computer does not have."""
 OVER = {"active": False}
 KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
 CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
@@ -249,6 +251,9 @@ _HEALTH = (
             ),
         )
     ),
+    Asked("POST /devices/{part}/errors/{error}/acknowledge", "No such device", LOST_ARM),
+    Asked("PUT /devices/{part}/errors/{error}/shelf", "No such device", LOST_ARM, body=KNOWN),
+    Asked("DELETE /devices/{part}/errors/{error}/shelf", "No such device", LOST_ARM),
     *(
         Asked(
             f"POST /{kind}/{{part}}/errors/{{error}}",

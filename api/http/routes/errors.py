@@ -33,9 +33,9 @@ async def list_errors(
         ),
     ] = False,
 ) -> Response:
-    """List the errors of the robot and of all its parts, also those that are normal.
+    """List the errors of the robot, of its devices and of all its parts, also the normal ones.
 
-    They are in the order of the model file; of `active=true` and `open=true`, in the order in which
+    They are in the order of their files; of `active=true` and `open=true`, in the order in which
     they came.
     """
     # What is due by now is an error by now.

@@ -89,6 +89,7 @@ from domain.events.reactions import (
     ReactionEnded,
     ReactionExhausted,
     ReactionOverruled,
+    ReactionReported,
     ReactionWouldAct,
 )
 from domain.events.service import (
@@ -108,7 +109,7 @@ from domain.events.targets import (
 )
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
-from domain.reaction_terms import Action, Arm
+from domain.reaction_terms import Action, Arm, ReactionState
 from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from tests.support.record_samples.device_events import DEVICE_EVENTS
@@ -201,6 +202,9 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+    ),
+    "reaction.reported": (
+        ReactionReported(part=PartName("left/arm"), reaction="LIMP", state=ReactionState.EXHAUSTED),
     ),
     "order.refused": (
         OrderRefused(

@@ -36,6 +36,7 @@ from domain.inputs import (
     OrderReceived,
     ParametersRequest,
     PeerStops,
+    ReactionReport,
     Reading,
     Readings,
     ReleaseRequest,
@@ -55,7 +56,7 @@ from domain.inputs import (
     WriteRecord,
 )
 from domain.lifecycle import LifecycleState, Transition
-from domain.reaction_terms import Arm
+from domain.reaction_terms import Arm, ReactionState
 from domain.state_and_mode import ModeName, PartName
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
 from tests.support.record_samples.pieces import KEPT, PARAMETERS, PATH
@@ -396,6 +397,9 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
     "stops_released": (
         StopsReleased(stops=(StopId("arm-0f0f-3"),), computer=SUPERVISOR),
         StopsReleased(stops=(), computer=ComputerName("arm")),
+    ),
+    "reaction_report": (
+        ReactionReport(part=PartName("left/arm"), reaction="LIMP", state=ReactionState.ACTING),
     ),
     "order_received": (
         OrderReceived(

@@ -13,6 +13,7 @@ from domain.commands import (
     Drive,
     PreemptGoal,
     SendGoal,
+    TellReaction,
     TellStops,
 )
 from domain.computers import ComputerName, PeerStop, StopId
@@ -41,7 +42,7 @@ from domain.kept import (
     KeptUnacknowledged,
 )
 from domain.lifecycle import LifecycleState, Transition
-from domain.reaction_terms import Arm
+from domain.reaction_terms import Arm, ReactionState
 from domain.snapshot import StepStatus
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.vehicle import DriveCommand, Pose, VehicleState
@@ -105,6 +106,9 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
         AnswerOrder(request=41, node=PartName("left/arm"), accepted=True, reason=""),
     ),
     "act_alone": (ActAlone(autonomous=True),),
+    "tell_reaction": (
+        TellReaction(part=PartName("left/arm"), reaction="LIMP", state=ReactionState.IDLE),
+    ),
     "actor": (
         Actor(name="ada", way="http", address="10.0.0.7"),
         Actor(name="", way="", address=""),

@@ -83,13 +83,14 @@ class Alarm extends HTMLElement {
     const { part, state } = error;
     // A root is as urgent as the worst that follows from it.
     const { severity } = worseBelow(error, below) ?? error;
-    this.#path = `${part === null ? "" : partPath(parts[part] ?? { kind: devices[part] ? "device" : "node", name: part })}/errors/${encodeURIComponent(error.error)}`;
+    const owner = parts[part] ?? { kind: devices[part] ? "device" : "node", name: part };
+    this.#path = `${part === null ? "" : partPath(owner)}/errors/${encodeURIComponent(error.error)}`;
     setAttribute(this, "data-state", state);
     setAttribute(this, "data-severity", severity);
     showShape(this.shape, severity, isOn(error));
     setAttribute(this.details.firstChild, "title", errorName(error));
     setText(this.name, error.error);
-    renderOnce(this.owner, String(part), () => (part === null ? [] : namedParts(part)));
+    renderOnce(this.owner, String(part), () => (part === null ? [] : namedParts(owner)));
     renderOnce(this.tags, tagsOf(error).join(), () => tagsOf(error).map((tag) => el("span", { class: "tag" }, tag)));
     setText(this.message, plainMessage(error.message, signals));
   }
@@ -165,7 +166,7 @@ class Alarm extends HTMLElement {
     setAttribute(this.shelve, "hidden", until !== null || (!isOn(error) && !error.chattering));
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
-    setAttribute(this.link, "hidden", part === null || this.#shown.view.state.devices[part] !== undefined);
+    setAttribute(this.link, "hidden", part === null);
     if (part !== null) setText(this.link, `Show ${part.length > LONG ? "the part" : part}`);
     setAttribute(this.moment, "hidden", !since);
     if (until !== null) this.form?.close();
@@ -211,9 +212,9 @@ class Alarm extends HTMLElement {
 }
 
 /** "of front_left_whe…vation": the end of a long name tells it from others. */
-function namedParts(part) {
-  const [start, end] = splitName(part);
-  return [el("span", {}, `of ${start}`), el("span", { class: "end" }, end)];
+function namedParts({ kind, name }) {
+  const [start, end] = splitName(name);
+  return [el("span", {}, `of ${kind === "device" ? "device " : ""}${start}`), el("span", { class: "end" }, end)];
 }
 
 customElements.define("ph-alarm", Alarm);

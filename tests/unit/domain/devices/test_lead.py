@@ -3,7 +3,7 @@
 import pytest
 
 from domain.actor import Actor
-from domain.commands import ActAlone, AnswerOrder, AskFacts, AskTransition
+from domain.commands import ActAlone, AnswerOrder, AskFacts, AskTransition, TellReaction
 from domain.computers import DeviceState
 from domain.devices.lead_view import Word
 from domain.devices.settings import OfflineSettings
@@ -21,6 +21,7 @@ from domain.inputs import (
 )
 from domain.kept import KeptTarget
 from domain.lifecycle import LifecycleState, Transition
+from domain.parameters import ParameterValue
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, SystemState
@@ -506,58 +507,190 @@ def test_a_target_of_before_a_restart_is_dropped_with_the_first_connection() -> 
 
 # --- reactions -----------------------------------------------------------------------------------
 
-HOT = ErrorReport(BASE, "HOT", active=True)
-COOL = ErrorReport(BASE, "HOT", active=False)
-
-COOLING = """
+REACTING = """
 drive_base: {ros__parameters: {type: node,
-  errors: {HOT: {}},
-  reactions: {COOL: {when: "drive_base.errors.HOT", action: state, target: inactive}}}}
+  modes: {__DEFAULT__: {ros__parameters: {max_speed: 0.1}},
+          SLOW: {ros__parameters: {max_speed: 0.2}}, FAST: {ros__parameters: {max_speed: 0.9}}},
+  errors: {HOT: {}, WARM: {}, BURNT: {}},
+  reactions: {COOL: {when: "drive_base.errors.HOT", action: state, target: inactive},
+              CALM: {when: "drive_base.errors.WARM", action: mode, target: active.SLOW},
+              HALT: {when: "drive_base.errors.BURNT", action: emergency_stop}}}}
 manipulator: {ros__parameters: {type: node}}
 """
 
 
-def with_reactions(*, acts: bool) -> DeviceRobot:
-    robot = following(offline(reactions=acts), read_model(COOLING).model)
-    robot.carry_out("drive_base", "configure", "activate")
+def reacting(does: OfflineSettings = AT_REST) -> DeviceRobot:
+    """Return a device that was ordered to be active and fast."""
+    robot = following(does, read_model(REACTING).model)
+    robot.carry_out("drive_base", "configure", {"max_speed": 0.9}, "activate")
     return robot
 
 
-def test_reactions_of_a_device_act_when_it_acts_alone_and_its_file_says_so() -> None:
-    robot = with_reactions(acts=True)
-    robot.lose()
-    robot.advance(2)
-
-    robot.give(HOT)
+def find(robot: DeviceRobot, error: str, *, active: bool = True) -> None:
+    robot.give(ErrorReport(BASE, error, active))
     robot.advance(1)
+
+
+def told_of(robot: DeviceRobot, reaction: str) -> list[str]:
+    return [
+        str(told.state)
+        for told in robot.told
+        if isinstance(told, TellReaction) and told.reaction == reaction
+    ]
+
+
+def test_a_reaction_that_is_all_its_own_acts_at_once_while_connected() -> None:
+    robot = reacting()
+
+    find(robot, "HOT")
+
+    assert robot.actual("drive_base") == "inactive"
+    assert told_of(robot, "COOL") == ["idle", "acting"]
+
+
+def test_a_reaction_slows_down_what_the_supervisor_activated() -> None:
+    robot = reacting()
+
+    find(robot, "WARM")
+
+    assert robot.actual("drive_base") == "active.SLOW"
+
+
+def test_a_reaction_does_not_activate_what_the_supervisor_did_not() -> None:
+    robot = following(model=read_model(REACTING).model)
+
+    find(robot, "WARM")
+
+    assert robot.actual("drive_base") == "unconfigured"
+    assert told_of(robot, "CALM") == ["idle"]
+
+
+def test_a_reaction_engages_the_stop_of_the_device() -> None:
+    robot = reacting()
+
+    find(robot, "BURNT")
+
+    assert robot.core.emergency_stop().engaged
+
+
+def test_the_end_of_a_reaction_is_told_and_leaves_its_part_as_it_is() -> None:
+    robot = reacting()
+    find(robot, "WARM")
+
+    find(robot, "WARM", active=False)
+
+    assert told_of(robot, "CALM") == ["idle", "acting", "idle"]
+    assert robot.actual("drive_base") == "active.SLOW"
+
+
+@pytest.mark.parametrize(
+    ("error", "order", "kept_in"),
+    [
+        ("HOT", "activate", "COOL keeps drive_base in inactive"),
+        ("WARM", {"max_speed": 0.9}, "CALM keeps drive_base in active.SLOW"),
+    ],
+)
+def test_an_order_against_a_reaction_is_refused(
+    error: str, order: str | dict[str, ParameterValue], kept_in: str
+) -> None:
+    robot = reacting()
+    find(robot, error)
+
+    answer = robot.answer_to(robot.order("drive_base", order))
+
+    assert (answer.accepted, answer.reason) == (False, f"reaction {kept_in}")
+
+
+def test_an_order_that_agrees_with_a_reaction_or_goes_to_rest_passes() -> None:
+    robot = reacting()
+    find(robot, "WARM")
+
+    robot.carry_out("drive_base", {"max_speed": 0.2}, "deactivate")
+    robot.advance(5)
 
     assert robot.actual("drive_base") == "inactive"
 
 
-def test_reactions_of_a_device_only_tell_when_it_acts_alone_without_them() -> None:
-    robot = with_reactions(acts=False)
+def test_after_a_reaction_the_supervisor_leads_back() -> None:
+    robot = reacting()
+    find(robot, "WARM")
+    find(robot, "WARM", active=False)
+
+    robot.carry_out("drive_base", {"max_speed": 0.9})
+
+    assert robot.actual("drive_base") == "active.FAST"
+
+
+def test_reactions_act_until_the_device_acts_alone_without_them() -> None:
+    robot = reacting(offline())
+    robot.lose()
+    robot.advance(0.1)
+    find(robot, "WARM")
+    assert (robot.lead.word, robot.actual("drive_base")) == (Word.DEVICE, "active.SLOW")
+
+    find(robot, "HOT")
+
+    assert robot.actual("drive_base") == "active.SLOW"
+    assert "COOL" in [event["reaction"] for event in robot.happened("reaction.would_act")]
+
+
+def test_reactions_act_while_the_device_acts_alone_if_its_file_says_so() -> None:
+    robot = reacting(offline(reactions=True))
     robot.lose()
     robot.advance(2)
 
-    robot.give(HOT)
+    find(robot, "HOT")
+
+    assert robot.actual("drive_base") == "inactive"
+
+
+def test_a_device_that_was_never_connected_reacts_to_nothing() -> None:
+    robot = DeviceRobot(offline(reactions=True), read_model(REACTING).model)
+
+    find(robot, "BURNT")
+
+    assert not robot.core.emergency_stop().engaged
+
+
+def test_a_reaction_that_began_alone_goes_on_when_the_supervisor_is_back() -> None:
+    robot = reacting(offline(reactions=True))
+    robot.lose()
+    robot.advance(2)
+    robot.give(ErrorReport(BASE, "HOT", active=True))
+
+    robot.connect()
     robot.advance(1)
 
-    assert robot.actual("drive_base") == "active"
-    assert [event["reaction"] for event in robot.happened("reaction.would_act")] == ["COOL"]
+    assert robot.actual("drive_base") == "inactive"
+    assert told_of(robot, "COOL")[-1] == "acting"
+
+
+def test_each_supervisor_is_told_anew_which_reactions_act() -> None:
+    robot = reacting()
+    find(robot, "HOT")
+    robot.lose()
+    robot.told.clear()
+
+    robot.connect(SECOND)
+
+    assert (told_of(robot, "COOL"), told_of(robot, "CALM")) == (["acting"], ["idle"])
 
 
 def test_what_a_reaction_did_alone_stays_when_the_supervisor_is_back() -> None:
-    robot = with_reactions(acts=True)
+    robot = reacting(offline(reactions=True))
     robot.lose()
-    robot.give(HOT)
+    find(robot, "HOT")
     robot.advance(5)
 
     robot.connect()
-    robot.give(COOL)
+    find(robot, "HOT", active=False)
     robot.advance(5)
 
     assert robot.actual("drive_base") == "inactive"
     assert robot.core.part(BASE).target is None
+
+
+# --- what can be seen ----------------------------------------------------------------------------
 
 
 def test_what_can_be_seen_says_whose_word_counts() -> None:

@@ -36,7 +36,9 @@ left: {ros__parameters: {type: node,
     STOP: {when: "motor_c > 90", action: emergency_stop},
     HALT: {when: "motor_c > 90", action: stop},
     CHARGE: {when: "battery_level < 0.2", action: state, target: inactive},
-    FAR: {when: "robot.state == ERROR", action: tell},
+    FAR: {when: "vehicle.speed_mps > 3", action: state, target: inactive},
+    SAY: {when: "motor_c > 70", action: tell},
+    AGAIN: {when: "left.errors.HOT", action: restart},
     STEP: {when: "motor_c > 85", action: state, target: inactive, escalate_after_s: 1,
            escalate_to: HALT}}}}
 right: {ros__parameters: {type: node, errors: {STUCK: {}, DARK: {when: "task.progress > 0.5"}}}}
@@ -118,7 +120,9 @@ def test_reactions_are_kept_whose_conditions_and_targets_are_its_own(own: SubMod
     [
         ("HALT", "its action stop is about the task, which is the supervisor's"),
         ("CHARGE", "battery_level is not its own"),
-        ("FAR", "robot.state is not its own"),
+        ("FAR", "vehicle.speed_mps is not its own"),
+        ("SAY", "it only tells, as the supervisor does"),
+        ("AGAIN", "it leads back to a target, which the supervisor knows"),
         ("STEP", "it escalates to HALT, which is not its own"),
     ],
 )

@@ -8,7 +8,8 @@ from domain.health.signals import default_signals
 from domain.lifecycle import LifecycleState
 from domain.state_and_mode import StateAndMode
 from domain.timebase import seconds
-from service.files.computer_share import ComputerShare, share_of
+from service.files.computer_share import ComputerShare, reactions_of_devices, share_of
+from service.files.model_file import read_model
 from service.files.robot_file import (
     InvalidRobotFileError,
     RobotSettings,
@@ -170,3 +171,21 @@ def test_a_supervisor_of_devices_that_own_everything_reaches_no_node_itself() ->
     found = share(text="devices: {all: {parts: [actuation]}}")
 
     assert found.local_model.parts == ()
+
+
+REACTING = """
+drive_base: {ros__parameters: {type: node, errors: {HOT: {}},
+  reactions: {COOL: {when: "drive_base.errors.HOT", action: state, target: inactive},
+              HALT: {when: "drive_base.errors.HOT", action: stop}}}}
+manipulator: {ros__parameters: {type: node,
+  reactions: {REST: {when: "not manipulator.reachable", action: state, target: inactive}}}}
+"""
+
+
+def test_each_reaction_is_decided_about_where_all_of_it_is() -> None:
+    model = read_model(REACTING).model
+    robot = read_robot_file("devices: {base: {parts: [drive_base]}}", model)
+
+    assert reactions_of_devices(model, robot) == {"COOL": "base"}
+    assert reactions_of_devices(model, RobotSettings()) == {}
+    assert [*share_of(model, robot.model_copy(update={"device": "base"})).model.reactions] == [BASE]
