@@ -66,10 +66,16 @@ class Robot:
         return self._told()
 
     def hear(
-        self, computer: ComputerName, now: int, *stops: PeerStop, is_all: bool = True
+        self,
+        computer: ComputerName,
+        now: int,
+        *stops: PeerStop,
+        is_all: bool = True,
+        ended: tuple[str, ...] = (),
     ) -> list[str]:
         """Hear which stops another computer has."""
-        self.stop.take_stops_of_peer(PeerStops(computer, stops, is_all), now)
+        gone = None if is_all else tuple(map(StopId, ended))
+        self.stop.take_stops_of_peer(PeerStops(computer, stops, gone), now)
         return self._told()
 
     def hear_release(self, computer: ComputerName, now: int, *stops: str) -> list[str]:

@@ -62,6 +62,16 @@ def test_whoever_is_not_dealt_with_stops_the_robot_and_does_not_release_it() -> 
     assert robot.hear(ARM, 10, stop_of_arm(2)) == ["emergency_stop.peer_released"]
 
 
+def test_whoever_is_not_dealt_with_releases_what_it_engaged_itself() -> None:
+    robot = Robot(peers=(ARM,))
+    robot.hear(ARM, 7, stop_of_arm(1), stop_of_arm(2), is_all=False)
+
+    assert robot.hear(ARM, 8, stop_of_arm(2), is_all=False, ended=("arm-1",)) == [
+        "emergency_stop.peer_released"
+    ]
+    assert [stop.id for stop in robot.stop.view().stops] == ["arm-2"]
+
+
 def test_nothing_is_known_of_the_connection_to_a_computer_that_the_robot_does_not_have() -> None:
     robot = Robot(peers=(BASE,))
     robot.hear(ARM, 7, stop_of_arm())

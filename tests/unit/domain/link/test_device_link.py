@@ -2,13 +2,14 @@
 
 from dataclasses import replace
 
-from domain.commands import ActAlone, AnswerOrder, AskFacts, AskTransition
+from domain.commands import ActAlone, AnswerOrder, AskFacts, AskTransition, TellReaction
 from domain.computers import SUPERVISOR, ComputerName, DeviceState, Incarnation
-from domain.inputs import NodeAnswer, NodeReport, SupervisorStatus
+from domain.inputs import NodeAnswer, NodeReport, ReactionReport, SupervisorStatus
 from domain.lifecycle import LifecycleState, Transition
 from domain.link.device_link import DeviceLink
 from domain.link.drops import Drop
 from domain.link.messages import Beat, NodeOrder, Report
+from domain.reaction_terms import ReactionState
 from domain.timebase import seconds
 from tests.support.linked_pair import (
     ARM,
@@ -39,7 +40,9 @@ def an_order(robot: LinkedRobot, seq: int = 50) -> NodeOrder:
     incarnation = robot.supervisor.machine.peers.own.incarnation
     assert isinstance(robot.base.machine, DeviceLink)
     command = AskTransition(700 + seq, DRIVE, Transition.CONFIGURE)
-    return NodeOrder(SUPERVISOR, incarnation, seq, robot.base.machine.session, command)
+    heard_seq = robot.supervisor.machine.peers[BASE].heard_seq
+    session = robot.base.machine.session
+    return NodeOrder(SUPERVISOR, incarnation, seq, session, command, heard_seq)
 
 
 # --- whom it follows -----------------------------------------------------------------------------
@@ -193,6 +196,21 @@ def test_a_command_of_an_earlier_session_is_answered_with_its_reason() -> None:
     assert robot.supervisor.answers == [NodeAnswer(750, DRIVE, False, reason)]
 
 
+def test_a_command_that_was_held_up_while_beats_got_through_is_refused() -> None:
+    robot = connected()
+    robot.way(SUPERVISOR, BASE).order_delay = seconds(1)
+    robot.order()
+    robot.run(1.1)
+    in_time = len(robot.base.orders)
+    robot.way(SUPERVISOR, BASE).order_delay = seconds(2)
+    request = robot.order()
+    robot.run(2.1)
+
+    assert in_time == len(robot.base.orders) == 1
+    reason = "it was on its way for too long"
+    assert robot.supervisor.answers == [NodeAnswer(request, DRIVE, False, reason)]
+
+
 def test_while_it_is_cut_off_it_carries_out_no_command() -> None:
     robot = connected()
     robot.cut(SUPERVISOR, BASE)
@@ -264,6 +282,23 @@ def test_it_tells_of_its_own_parts_only_and_no_answers_of_nodes() -> None:
     robot.run(0.001)
 
     assert not any(isinstance(message, Report) for _, _, message in robot.sent[before:])
+
+
+def test_it_tells_at_once_how_a_reaction_stands_and_again_after_a_cut() -> None:
+    robot = connected()
+    acting, idle = ReactionState.ACTING, ReactionState.IDLE
+    robot.tell(robot.base, TellReaction(DRIVE, "COOL", acting))
+    robot.run(0.01)
+    robot.cut(BASE, SUPERVISOR)
+    robot.run(2)
+    robot.tell(robot.base, TellReaction(DRIVE, "COOL", idle))
+    robot.mend(BASE, SUPERVISOR)
+    robot.run(1)
+
+    assert [given for _, given in robot.supervisor.inputs if isinstance(given, ReactionReport)] == [
+        ReactionReport(DRIVE, "COOL", acting),
+        ReactionReport(DRIVE, "COOL", idle),
+    ]
 
 
 def test_it_tells_nobody_who_does_not_hear_it() -> None:
