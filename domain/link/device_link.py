@@ -156,6 +156,7 @@ class DeviceLink:
         if heard is Heard.NOTHING:
             self.drops.count(Drop.OLD)
         elif peer is self._supervisor:
+            self.peers.take_passed_on(beat, now, gathering)
             self._orders.follow(beat.incarnation)
             self._follow(beat, heard, now, gathering)
 
@@ -205,7 +206,7 @@ class DeviceLink:
     def _renew_session(self) -> None:
         self._session = Session(self._new_id())
 
-    def _says(self, peer: Peer) -> Said:
+    def _says(self, peer: Peer, now: Instant) -> Said:
         if peer is not self._supervisor:
             return Said()
         return Said(session=self._session, autonomous=self._autonomous)

@@ -6,7 +6,7 @@ takes the place of a process that lives.
 """
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from domain.computers import (
     StopId,
 )
 from domain.link.lease import Lease
-from domain.link.messages import Beat, Terms
+from domain.link.messages import Beat, StopsPassedOn, Terms
 from domain.link.processes import Other, Others
 from domain.link.settings import LinkSettings
 from domain.link.stops import MAX_STOPS, HeardStops, OwnStops, StopsNews
@@ -52,6 +52,7 @@ class Said(NamedTuple):
     session: Session | None = None
     renew: Session | None = None
     autonomous: bool = False
+    passed_on: tuple[StopsPassedOn, ...] = ()
 
 
 class Heard(Enum):
@@ -228,6 +229,36 @@ class Peer:
                 if stop in own and len(self.releases) < MAX_STOPS:
                     self.releases[stop] = None
 
+    def pass_on(self, now: Instant) -> list[StopsPassedOn]:
+        """Return what its processes said last of their stops."""
+        return [
+            StopsPassedOn(self.name, process, version, stops, process == self.incarnation)
+            for process, (version, stops) in self.stops.told(now).items()
+        ]
+
+    def take_passed_on(self, all_said: Sequence[StopsPassedOn], now: Instant) -> None:
+        """Take what the supervisor heard of its processes; a beat of their own says the same.
+
+        A process that was replaced there, and is silent here, has no stop any more.
+        """
+        for said in all_said:
+            self.stops.take(
+                said.incarnation,
+                said.version,
+                said.stops,
+                now,
+                lives=True,
+                is_dealt_with=said.is_dealt_with,
+            )
+        if not any(said.is_dealt_with for said in all_said):
+            return
+        present: set[Incarnation | None] = {said.incarnation for said in all_said}
+        if not self.lease.is_silent(now):
+            present.add(self.incarnation)
+        for process in self.stops.processes():
+            if process not in present and process not in self._others:
+                self.stops.replace(process)
+
     def stops_news(self) -> StopsNews | None:
         """Return its stops, if they are news; None: they are not."""
         return self.stops.news(is_all=self.was_connected)
@@ -252,6 +283,7 @@ class Peer:
             heard_stops=self.stops.version_of(self.incarnation),
             releases=tuple(self.releases),
             refused=self._others.refused(),
+            passed_on=said.passed_on,
         )
 
     # --- who answers -----------------------------------------------------------------------------

@@ -37,10 +37,7 @@ class OwnStops:
 
     def told(self, now: Instant) -> tuple[EngagedStop, ...]:
         """Return them as they are told to others now."""
-        return tuple(
-            EngagedStop(stop.id, stop.by, stop.reason, max(now - stop.since, 0))
-            for stop in self._stops
-        )
+        return _told(self._stops, now)
 
     def take_release(self, asked: Iterable[StopId]) -> tuple[StopId, ...]:
         """Return those of the stops that somebody releases now, for the first time."""
@@ -152,6 +149,13 @@ class HeardStops:
             if not known.stops:
                 del self._by[process]
 
+    def told(self, now: Instant) -> dict[Incarnation, tuple[int, tuple[EngagedStop, ...]]]:
+        """Return by process what it said last: the version, and the stops as they are told now."""
+        return {
+            process: (max(known.version, 0), _told(known.stops.values(), now))
+            for process, known in self._by.items()
+        }
+
     def processes(self) -> tuple[Incarnation, ...]:
         """Return all processes that said something."""
         return tuple(self._by)
@@ -174,3 +178,9 @@ class HeardStops:
     def _has_room_for(self, stops: Sequence[EngagedStop]) -> bool:
         """Tell whether one more process can be remembered; without a stop there is no need to."""
         return bool(stops) and len(self._by) < _MAX_PROCESSES
+
+
+def _told(stops: Iterable[PeerStop], now: Instant) -> tuple[EngagedStop, ...]:
+    return tuple(
+        EngagedStop(stop.id, stop.by, stop.reason, max(now - stop.since, 0)) for stop in stops
+    )
