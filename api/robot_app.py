@@ -97,6 +97,7 @@ def _resources() -> list[BaseRoute]:
     router = APIRouter(responses=_A_PROBLEM)
     for resource in _RESOURCES:
         router.include_router(resource)
+    router.include_router(announcing.part_router, prefix="/devices", tags=["devices"])
     for prefix in ("systems", "nodes"):
         of_parts = (
             announcing.part_router,
@@ -106,6 +107,7 @@ def _resources() -> list[BaseRoute]:
         )
         for resource in of_parts:
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
+    router.include_router(announcing.part_router, prefix="/devices", tags=["devices"])
     return router.routes
 
 

@@ -219,8 +219,11 @@ class PeerStops:
 
     computer: ComputerName
     stops: tuple[PeerStop, ...]
-    is_all: bool = True
-    """False: whoever said so is not dealt with (yet); what was known before stays, too."""
+    ended: tuple[StopId, ...] | None = None
+    """Those that ended; what is in neither stays as it was known. None: all but `stops` ended.
+
+    Whoever is not dealt with, or not yet, can engage a stop, but end none except its own.
+    """
 
 
 @dataclass(frozen=True, slots=True)

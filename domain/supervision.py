@@ -25,6 +25,7 @@ from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.announcing import Announcing
+from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.error_causes import ErrorCauses
@@ -155,14 +156,8 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
-        propagation = Propagation(
-            health.error_list,
-            self.conditions,
-            errors.unheard,
-            outbox,
-            start,
-            self._devices.unheard,
-        )
+        unheard = {UNREACHABLE: errors.unheard, LOST: self._devices.unheard}
+        propagation = Propagation(health.error_list, self.conditions, unheard, outbox, start)
         return (
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
@@ -190,7 +185,8 @@ class Supervision:
 
     def _devices_by(self, settings: SupervisionSettings, start: Instant) -> Devices:
         within, errors = settings.devices_heard_within, self._health.error_list
-        return Devices(settings.devices, within, self._parts, errors, self._outbox, start)
+        parts, stop = self._parts, self._emergency_stop
+        return Devices(settings.devices, within, parts, errors, stop, self._outbox, start)
 
     def _lead_by(self, settings: LeadSettings | None, start: Instant) -> Lead | None:
         if settings is None:
@@ -328,7 +324,8 @@ class Supervision:
 
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
         """Return a mode of a part, with its blockers."""
-        return self._changing.mode(part, mode)
+        view = self._changing.mode(part, mode)
+        return view if self._lead is None else self._lead.restricted(part, view)
 
     def why(self, part: PartName) -> tuple[Blocker, ...]:
         """Return why a part is not where it should be, the reasons nearest to it first."""
@@ -340,7 +337,8 @@ class Supervision:
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
         """Return the transitions that would be accepted now and change something."""
-        return self._changing.available_transitions(part)
+        available = self._changing.available_transitions(part)
+        return available if self._lead is None else self._lead.available(available)
 
     def plan(self, request: ChangeRequest) -> PlanView:
         """Return what a request would do now, without starting it.

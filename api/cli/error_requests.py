@@ -69,7 +69,7 @@ def _ask(
     client: "ServiceClient", method: str, name: str, what: str, body: Json | None = None
 ) -> Json:
     part, _, error = name.rpartition(".")
-    path = client.path_of(part) if part else ""
+    path = _path_of(client, part) if part else ""
     try:
         return client.call(method, f"{path}/errors/{error}/{what}", body)
     except ServiceProblemError as problem:
@@ -83,3 +83,14 @@ def _ask(
             detail = f"the robot itself has no error {name!r}"
             raise ServiceProblemError({"detail": detail, "hint": hint}) from problem
         raise no_such("error", name, [error_name(item) for item in items]) from problem
+
+
+def _path_of(client: "ServiceClient", part: str) -> str:
+    """Return the path of a part, or of a device, whose errors are named as those of parts are."""
+    try:
+        return client.path_of(part)
+    except ServiceProblemError as problem:
+        devices = client.call("GET", "/devices")["items"]
+        if all(item["device"] != part for item in devices):
+            raise problem from None
+        return f"/devices/{part}"

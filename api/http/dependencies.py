@@ -54,13 +54,20 @@ async def _part(part: PartPath, request: Request, supervisor: SupervisorDep) -> 
 
 
 def _kind(request: Request) -> str:
-    return "system" if request.url.path.startswith("/systems/") else "node"
+    """Return what a path is about: a system, a node, or a device, which has errors as these do."""
+    kinds = ("system", "device")
+    return next((kind for kind in kinds if request.url.path.startswith(f"/{kind}s/")), "node")
 
 
 def known_of_kind(request: Request, supervisor: Supervisor) -> Collection[PartName]:
-    """Return the parts of the kind that the path of a request asks for."""
+    """Return the parts of the kind that the path of a request asks for, or the devices."""
     model = supervisor.model
-    return model.systems.keys() if _kind(request) == "system" else model.nodes.keys()
+    match _kind(request):
+        case "system":
+            return model.systems.keys()
+        case "device":
+            return [PartName(name) for name in supervisor.core.devices()]
+    return model.nodes.keys()
 
 
 def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
@@ -69,15 +76,27 @@ def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
     Raises:
         UnknownPartError: There is no part of that name and kind; the error has a hint.
     """
+    if request.url.path.startswith("/devices/"):
+        return _known_device(part, supervisor)
     kind, known = _kind(request), known_of_kind(request, supervisor)
     name = part_name(part)
     if name in known:
         return name
+    if kind == "device":
+        raise UnknownPartError(kind, name, tuple(known))
     if name in supervisor.model:
         path = request.url.path.replace(part, name, 1)
         raise UnknownPartError.of_other_kind(name, kind, _hint(supervisor.model, kind, name, path))
     hint = _hint(supervisor.model, kind, name, request.url.path)
     raise UnknownPartError(kind, name, tuple(islice(known, 21)), hint)
+
+
+def _known_device(name: str, supervisor: Supervisor) -> PartName:
+    """Return a device, whose errors are named as those of parts are."""
+    devices = supervisor.core.devices()
+    if name not in devices:
+        raise UnknownPartError("device", name, tuple(devices))
+    return PartName(name)
 
 
 PartDep = Annotated[PartName, Depends(_part)]

@@ -22,8 +22,9 @@ from domain.events.devices import (
 from domain.events.event import Event
 from domain.findings import Blocker
 from domain.health.built_in_errors import DEVICE_CONFLICT, LATE, LOST
+from domain.health.emergency_stop import EmergencyStop
 from domain.health.error_list import ErrorList, Found
-from domain.inputs import DeviceStatus, PeerStops, Restored
+from domain.inputs import DeviceStatus, Restored
 from domain.outbox import Outbox
 from domain.parts.node_doubts import DEVICE_LOST
 from domain.parts.parts import Parts
@@ -46,6 +47,7 @@ class Devices(Concern):
         heard_within: Duration,
         parts: Parts,
         errors: ErrorList,
+        stop: EmergencyStop,
         outbox: Outbox,
         start: Instant,
     ) -> None:
@@ -56,6 +58,7 @@ class Devices(Concern):
             heard_within: How long it is waited for them after a start.
             parts: Are told why nothing is heard of nodes.
             errors: Receives the errors of devices.
+            stop: Tells which emergency stops are engaged on devices.
             outbox: Receives events.
             start: The current time.
         """
@@ -63,6 +66,8 @@ class Devices(Concern):
         self._heard_within = heard_within
         self._parts = parts
         self._errors = errors
+        self._stop = stop
+        self._stop_seen = stop.view()
         self._outbox = outbox
         self._views = {name: _never_seen(each, start) for name, each in devices.items()}
         self._unheard = set(devices)
@@ -80,11 +85,7 @@ class Devices(Concern):
     @property
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
-        return {
-            DeviceStatus: self.take_status,
-            PeerStops: self.follow_stops,
-            Restored: self.restore,
-        }
+        return {DeviceStatus: self.take_status, Restored: self.restore}
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Wait for all devices again after a restart."""
@@ -124,14 +125,6 @@ class Devices(Concern):
         self._cut_off(name)
         self._judge(name, now)
 
-    def follow_stops(self, said: PeerStops, now: Instant) -> None:
-        """Show which emergency stops are engaged on a device."""
-        view = self._views.get(said.computer)
-        stops = tuple(stop.id for stop in said.stops)
-        if view is not None and stops != view.stops:
-            self._views[said.computer] = replace(view, stops=stops)
-            self._outbox.devices.add(said.computer)
-
     def wake_at(self) -> Instant | None:
         """Return when it is no longer waited for devices; None: it is not."""
         return self._waits_until if self._awaited else None
@@ -143,7 +136,9 @@ class Devices(Concern):
             self._parts.await_devices(wait=False)
 
     def settle(self, now: Instant) -> bool:
-        """Wait no longer once something is known of each node of each device."""
+        """Show stops of devices; wait no longer once something is known of each of their nodes."""
+        if self._stop.view() is not self._stop_seen:
+            self._follow_stops()
         if not self._awaited:
             return False
         self._awaited -= {name for name in self._awaited if self._is_known(name)}
@@ -164,6 +159,14 @@ class Devices(Concern):
         return dict(self._views)
 
     # --- inside ----------------------------------------------------------------------------------
+
+    def _follow_stops(self) -> None:
+        self._stop_seen = self._stop.view()
+        for name, view in self._views.items():
+            stops = tuple(each.id for each in self._stop_seen.stops if each.computer == name)
+            if stops != view.stops:
+                self._views[name] = replace(view, stops=stops)
+                self._outbox.devices.add(name)
 
     def _is_known(self, name: ComputerName) -> bool:
         facts = self._parts.facts

@@ -135,9 +135,13 @@ class EmergencyStop(Concern):
     # --- other computers -------------------------------------------------------------------------
 
     def take_stops_of_peer(self, told: PeerStops, now: Instant) -> None:
-        """Take which stops another computer has; what is new stops before what is gone releases."""
+        """Take which stops another computer has; what is new stops before what is gone releases.
+
+        Whoever is not dealt with may well stop the robot, but not release it.
+        """
         computer, before = told.computer, tuple(self._stops.of(told.computer))
-        self._stops.note_told(computer)
+        if told.is_all:
+            self._stops.note_told(computer)
         after = {stop.id: stop for stop in told.stops}
         for stop in after.values():
             if stop.id not in before:
@@ -147,9 +151,9 @@ class EmergencyStop(Concern):
                 self._stops.add(computer, replace(stop, since=min(stop.since, now)))
                 self._renew(now)
         for identity in before:
-            if identity not in after:
+            if told.is_all and identity not in after:
                 self._take_end(computer, identity, now)
-        if before != tuple(after):
+        if before != tuple(self._stops.of(computer)):
             self._keep_of_peer(computer)
         self._renew(now)
 
@@ -176,8 +180,9 @@ class EmergencyStop(Concern):
 
     def _note_connection(self, computer: ComputerName, state: DeviceState) -> None:
         """Note how a connection is; another concern owns the input, and what follows waits."""
-        self._stops.note_connection(computer, is_heard=state in _HEARD)
-        self._has_news = True
+        if computer in self._stops.peers:
+            self._stops.note_connection(computer, is_heard=state in _HEARD)
+            self._has_news = True
 
     def _tell_peers(self) -> None:
         if self._stops.peers:

@@ -5,7 +5,7 @@ again in the same step.
 """
 
 import heapq
-from collections.abc import Collection, Container, Iterable
+from collections.abc import Collection, Container, Iterable, Mapping
 
 from domain.actor import Actor
 from domain.concern import Concern
@@ -15,13 +15,11 @@ from domain.conditions.tree import Topic, TopicKind, comparisons
 from domain.conditions.watched import WatchedConditions
 from domain.deadlines import Deadlines
 from domain.events.health import PropagationNotSeen
-from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.error_causes import Place
 from domain.health.error_list import NORMAL, ErrorList, Found
 from domain.outbox import Outbox
 from domain.parts.declared_errors import DeclaredError
 from domain.snapshot import ErrorKey, ErrorState
-from domain.state_and_mode import PartName
 from domain.timebase import Instant, to_seconds
 
 LOOKS_AT_ONCE = 100
@@ -35,27 +33,24 @@ class Propagation(Concern):
         self,
         errors: ErrorList,
         watched: WatchedConditions,
-        unheard: Container[PartName],
+        unheard: Mapping[str, Container[str]],
         outbox: Outbox,
         start: Instant,
-        unheard_devices: Container[str] = (),
     ) -> None:
         """Follow conditions and errors.
 
         Args:
             errors: All errors, and which explain which.
             watched: Keeps conditions up to date.
-            unheard: Nodes that were not heard of since the start. What goes back to them alone is
-                on without a word, as they are unreachable without a word.
+            unheard: By error, the nodes and devices that have it since the start. What goes back
+                to them alone is on without a word, as they are unreachable without a word.
             outbox: Receives events.
             start: The current time.
-            unheard_devices: Devices that were not connected since the start, as `unheard`.
         """
         self._errors = errors
         self._causes = errors.causes
         self._watched = watched
-        self._unheard: dict[str, Container[str]] = {UNREACHABLE: unheard, LOST: unheard_devices}
-        """By error, who has it since the start."""
+        self._unheard = unheard
         self._outbox = outbox
         self._users: dict[str, list[ErrorKey]] = {}
         """By text of a condition, the errors that it decides about."""

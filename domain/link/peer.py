@@ -16,7 +16,6 @@ from domain.computers import (
     ComputerName,
     DeviceState,
     Incarnation,
-    PeerStop,
     Session,
     StopId,
 )
@@ -24,7 +23,7 @@ from domain.link.lease import Lease
 from domain.link.messages import Beat, Terms
 from domain.link.processes import Other, Others
 from domain.link.settings import LinkSettings
-from domain.link.stops import MAX_STOPS, HeardStops, OwnStops
+from domain.link.stops import MAX_STOPS, HeardStops, OwnStops, StopsNews
 from domain.link.terms import (
     DEVICE_CONFLICT,
     SECOND_SUPERVISOR,
@@ -227,8 +226,8 @@ class Peer:
                 if stop in own and len(self.releases) < MAX_STOPS:
                     self.releases[stop] = None
 
-    def stops_news(self) -> tuple[tuple[PeerStop, ...], bool] | None:
-        """Return all its stops, and whether there are no others, if that is news."""
+    def stops_news(self) -> StopsNews | None:
+        """Return its stops, if they are news; None: they are not."""
         return self.stops.news(is_all=self.was_connected)
 
     def beat(self, said: Said, now: Instant) -> Beat:

@@ -116,8 +116,7 @@ class Peers:
     def _tell_stops(self, peer: Peer, gathering: Gathering) -> None:
         news = peer.stops_news()
         if news is not None:
-            stops, is_all = news
-            gathering.give(PeerStops(peer.name, stops, is_all))
+            gathering.give(PeerStops(peer.name, *news))
 
     def _meet(self, name: ComputerName, now: Instant) -> Peer | None:
         if sum(not peer.is_known for peer in self) == _MAX_STRANGERS:

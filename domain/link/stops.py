@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 from domain.computers import Incarnation, PeerStop, StopId
 from domain.link.messages import EngagedStop
@@ -57,6 +58,13 @@ class _StopsOf:
         self.stops: dict[StopId, PeerStop] = {}
 
 
+class StopsNews(NamedTuple):
+    """What is new about the stops of another computer; see `PeerStops`."""
+
+    stops: tuple[PeerStop, ...]
+    ended: tuple[StopId, ...] | None
+
+
 class HeardStops:
     """The stops that are engaged on another computer, by the process that says so.
 
@@ -71,7 +79,7 @@ class HeardStops:
         self._by: dict[Incarnation, _StopsOf] = {}
         self._ended = deque[StopId](maxlen=MAX_STOPS)
         """Stops of processes that were replaced: they may arrive late."""
-        self._told: tuple[frozenset[StopId], bool] | None = None
+        self._told: tuple[frozenset[StopId], bool] = (frozenset(), False)
 
     @property
     def ids(self) -> frozenset[StopId]:
@@ -142,19 +150,20 @@ class HeardStops:
         """Return all processes that said something."""
         return tuple(self._by)
 
-    def news(self, *, is_all: bool) -> tuple[tuple[PeerStop, ...], bool] | None:
-        """Return all stops, and whether there are no others, if that is news; None: it is not.
+    def news(self, *, is_all: bool) -> StopsNews | None:
+        """Return all stops, and which ended, if that is news; None: it is not.
 
         Args:
-            is_all: Whether the computer itself is dealt with, and says what is engaged there.
+            is_all: Whether the computer itself is dealt with: what an earlier run of this computer
+                knew of it, and it does not say, has ended.
         """
         ids = self.ids
-        known = self._told or (frozenset(), False)
-        if (ids, is_all) == known:
+        known, was_all = self._told
+        if (ids, is_all) == (known, was_all):
             return None
         self._told = (ids, is_all)
         stops = tuple(stop for of in self._by.values() for stop in of.stops.values())
-        return stops[:MAX_STOPS], is_all
+        return StopsNews(stops[:MAX_STOPS], None if is_all else tuple(sorted(known - ids)))
 
     def _has_room_for(self, stops: Sequence[EngagedStop]) -> bool:
         """Tell whether one more process can be remembered; without a stop there is no need to."""

@@ -130,6 +130,10 @@ class SimulatedNetwork(Generic[MessageT]):
         """Return when the next message arrives; None: nothing is under way."""
         return self._under_way[0][0] if self._under_way else None
 
+    def empty_at(self) -> Instant | None:
+        """Return when all has arrived that is under way now; None: nothing is."""
+        return max((at for at, _, _ in self._under_way), default=None)
+
     def arrivals(self, now: Instant) -> list[Arrival[MessageT]]:
         """Return what arrives up to `now`, in its order; it is under way no more."""
         arrived = []

@@ -1,7 +1,8 @@
 """Where the computers of a robot listen for each other, and where they look for each other."""
 
 import ipaddress
-from collections.abc import Iterable, Sequence
+import socket
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 USUAL = "tcp/127.0.0.1:7470"
@@ -16,15 +17,40 @@ class Endpoints(NamedTuple):
     connect: tuple[str, ...]
 
 
-def of_supervisor(listen: Sequence[str], connect: Sequence[str], given: Sequence[str]) -> Endpoints:
+def is_own_address(host: str) -> bool:
+    """Tell whether a host is this machine; one that cannot be looked up is not."""
+    try:
+        found = socket.getaddrinfo(host.strip("[]"), 0, type=socket.SOCK_STREAM)
+        for family, kind, protocol, _, address in found:
+            with socket.socket(family, kind, protocol) as tried:
+                tried.bind(address)
+    except OSError:
+        return False
+    return True
+
+
+def of_supervisor(
+    listen: Sequence[str],
+    connect: Sequence[str],
+    given: Sequence[str],
+    is_here: Callable[[str], bool] = is_own_address,
+) -> Endpoints:
     """Return the endpoints of the supervisor, which devices look for.
+
+    One that listens elsewhere than devices look connects there, so that devices hear it: they
+    refuse it while they follow another one, and it is told.
 
     Args:
         listen: Of the robot file.
         connect: Of the robot file: where devices find the supervisor.
         given: On the command line: where this computer listens.
+        is_here: Tells whether a host is this machine.
     """
-    return Endpoints(tuple(given or listen or connect or (USUAL,)), ())
+    looked_for = tuple(connect) or tuple(map(_reachable, listen)) or (USUAL,)
+    own = tuple(given or listen or looked_for)
+    ports = set(map(_port, own))
+    others = (to for to in looked_for if _port(to) not in ports or not is_here(_host(to)))
+    return Endpoints(own, tuple(others))
 
 
 def of_device(listen: Sequence[str], connect: Sequence[str], given: Sequence[str]) -> Endpoints:
@@ -44,9 +70,8 @@ def is_on_this_machine(endpoints: Iterable[str]) -> bool:
 
 def _reachable(endpoint: str) -> str:
     """Return where somebody on the same machine finds who listens at an endpoint."""
-    protocol, _, address = endpoint.partition("/")
-    port = address.rpartition(":")[2]
-    host = _host(endpoint)
+    protocol = endpoint.partition("/")[0]
+    port, host = _port(endpoint), _host(endpoint)
     if host in {"0.0.0.0", "::", "[::]"}:  # compared only
         return f"{protocol}/{'127.0.0.1' if '.' in host else '[::1]'}:{port}"
     return endpoint
@@ -60,8 +85,15 @@ def _any_port(found: Sequence[str]) -> str:
 
 
 def _host(endpoint: str) -> str:
-    address = endpoint.partition("/")[2]
-    return address.partition("?")[0].partition("#")[0].rpartition(":")[0]
+    return _address(endpoint).rpartition(":")[0]
+
+
+def _port(endpoint: str) -> str:
+    return _address(endpoint).rpartition(":")[2]
+
+
+def _address(endpoint: str) -> str:
+    return endpoint.partition("/")[2].partition("?")[0].partition("#")[0]
 
 
 def _is_loopback(host: str) -> bool:

@@ -11,9 +11,11 @@ import json
 import logging
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 
 import zenoh
+from zenoh.handlers import Callback
 
 from domain.computers import ComputerName
 from service.call_thread import CallThread
@@ -81,10 +83,8 @@ class ZenohLink:
                 self._session.end()
             self._session = None
             self._intake.close()
-            # Also what is being opened: a session that is not closed keeps the process from ending.
-            _, pending = await asyncio.wait((thread.run(self._close),), timeout=_CLOSE_S)
-            if pending:
-                _log.error("link: zenoh did not close within %g s", _CLOSE_S)
+            # Also what is being opened meanwhile. A process ends without it, too.
+            await asyncio.wait((thread.run(self._close),), timeout=_CLOSE_S)
             thread.end()
 
     def send(self, to: ComputerName, message: bytes, *, may_be_lost: bool) -> None:
@@ -117,9 +117,11 @@ class ZenohLink:
         return _Session(self._opened, self._name, self._others, self._intake.take_in)
 
     def _close(self) -> None:
-        if self._opened is not None:
-            self._opened.close()  # type: ignore[no-untyped-call]
-            self._opened = None
+        opened, self._opened = self._opened, None
+        if opened is not None:
+            # Fails after 10 s where packets are lost; nothing is left to do then.
+            with suppress(zenoh.ZError):
+                opened.close()  # type: ignore[no-untyped-call]
 
 
 class _Session:
@@ -133,14 +135,17 @@ class _Session:
         take_in: Callable[..., None],
     ) -> None:
         self._session = session
-        self._beats = {to: _declare_beats(session, key(to, name, BEAT)) for to in others}
-        self._messages = {to: _declare_messages(session, key(to, name, MESSAGE)) for to in others}
+        self._beats = {to: _declare(session, key(to, name, BEAT), BEAT) for to in others}
+        self._messages = {to: _declare(session, key(to, name, MESSAGE), MESSAGE) for to in others}
         self._long = LongMessages(lambda to, message: _put(self._messages[to], message))
         for sender in others:
             for kind in (BEAT, MESSAGE):
                 expected = key(name, sender, kind)
                 take = partial(take_in, sender, may_be_lost=kind == BEAT)
-                session.declare_subscriber(expected, partial(_hand_over, expected, take))
+                # Direct: with a thread in between, what waits for it would have no bound, and it
+                # would keep the process from ending.
+                handler = Callback(partial(_hand_over, expected, take), indirect=False)
+                session.declare_subscriber(expected, handler)
 
     def send(self, to: ComputerName, message: bytes, *, may_be_lost: bool) -> bool:
         """Send a message; False: it was dropped."""
@@ -164,23 +169,16 @@ def _put(publisher: zenoh.Publisher, message: bytes) -> bool:
     return True
 
 
-def _declare_beats(session: zenoh.Session, key_expression: str) -> zenoh.Publisher:
+def _declare(session: zenoh.Session, key_expression: str, kind: str) -> zenoh.Publisher:
+    is_beat = kind == BEAT
+    reliability = zenoh.Reliability
     return session.declare_publisher(
         key_expression,
         congestion_control=zenoh.CongestionControl.DROP,
-        express=True,
-        priority=zenoh.Priority.REAL_TIME,
-        reliability=zenoh.Reliability.BEST_EFFORT,
-    )
-
-
-def _declare_messages(session: zenoh.Session, key_expression: str) -> zenoh.Publisher:
-    return session.declare_publisher(
-        key_expression,
-        congestion_control=zenoh.CongestionControl.DROP,
-        express=True,
-        priority=zenoh.Priority.DATA,
-        reliability=zenoh.Reliability.RELIABLE,
+        # Not express: each message would take a place of its own in a queue of few.
+        express=False,
+        priority=zenoh.Priority.REAL_TIME if is_beat else zenoh.Priority.DATA,
+        reliability=reliability.BEST_EFFORT if is_beat else reliability.RELIABLE,
     )
 
 

@@ -85,6 +85,11 @@ FAST = {"state": "active", "mode": "FAST"}
             [ERROR | {"error": "UNREACHABLE", "message": "lidar was never heard of"}],
             "was never heard of",
         ),
+        (
+            part("lidar", reachable=False, device="arm"),
+            [ERROR | {"error": "UNREACHABLE", "caused_by": [{"part": "arm", "error": "LOST"}]}],
+            "device arm is lost",
+        ),
         (part("lidar", reachable=False), [], "unreachable"),
         (
             system(

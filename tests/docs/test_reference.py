@@ -19,7 +19,7 @@ from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.actor import Actor
 from domain.changes.admission import ADVISORY
-from domain.computers import ComputerName, PeerStop, StopId
+from domain.computers import ComputerName, DeviceState, PeerStop, StopId
 from domain.conditions.condition import Condition
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
@@ -68,6 +68,7 @@ from tests.support.guarded_model import guarded_model
 from tests.support.http_robot import ACTUATION
 from tests.support.models import ARM, BASE, active, actuation_model
 from tests.support.reacting_robot import REST, ReactingRobot
+from tests.support.robot_of_devices import RobotOfDevices
 from tests.support.ruled_robot import RuledRobot, degrading_model
 from tests.support.shared import PROJECT
 
@@ -339,6 +340,17 @@ def a_carrier_that_reacts() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_lost_device() -> list[RecordedEvent]:
+    """A device is connected, late and lost; somebody else takes its name, and it is back."""
+    robot = RobotOfDevices().connect_all()
+    robot.says(DeviceState.LATE, reason="device arm has not been heard for 0.5 s")
+    robot.lose()
+    robot.says(DeviceState.CONFLICT, reason="device arm is not dealt with: it has another model")
+    robot.connect(run=2)
+    robot.says(DeviceState.CONNECTED, run=2, autonomous=True)
+    return robot.events
+
+
 def a_device_that_is_cut_off() -> list[RecordedEvent]:
     """A device follows, refuses under a stop, is cut off, does what it may, and follows again."""
     robot = DeviceRobot(offline(drive_base="active.SLOW"))
@@ -414,6 +426,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_device_that_is_cut_off,
         a_reaction_on_a_device,
         a_wait,
+        a_lost_device,
         a_step_left_out,
         the_examples,
     )

@@ -103,15 +103,14 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
     robot: RobotOfComputers, tmp_path: Path
 ) -> None:
     keeps = "--data", str(tmp_path / "supervisor")
-    supervisor = robot.supervisor(*keeps)
-    base, arm = robot.device("base"), robot.device("arm")
+    supervisor, base, arm = robot.all(*keeps)
     await supervisor.until_connected("base", "arm")
     supervisor.ask("/systems/actuation/mode", mode="PERFORMANCE")
 
     supervisor.kill()
     # Meanwhile the robot is no longer what was asked for.
-    await arm.until(lambda: arm.get("/devices")["this"]["state"] == "lost")
-    arm.ask("/nodes/manipulator/state", transition="deactivate")
+    arm.kill()
+    arm = robot.device("arm")
     supervisor = robot.supervisor(*keeps)
     begun = time.monotonic()
     await supervisor.until_connected("base", "arm")
@@ -119,9 +118,9 @@ async def test_a_supervisor_that_is_killed_and_started_again_knows_all_and_comma
 
     assert took_s < RETURN_WITHIN_S + SEEN_S
     assert supervisor.actual()["drive_base"] == ("active", "FAST")
-    assert supervisor.actual()["manipulator"] == ("inactive", None)
-    await asyncio.sleep(1.0)  # Nothing comes: that can only be waited for.
-    assert arm.actual() == {"manipulator": ("inactive", None)}
+    assert supervisor.actual()["manipulator"] == ("unconfigured", None)
+    await asyncio.sleep(1.5)  # Nothing comes: that can only be waited for.
+    assert arm.actual() == {"manipulator": ("unconfigured", None)}
     assert base.actual() == {"drive_base": ("active", "FAST")}
     assert supervisor.targets()["manipulator"] == ("active", "STRONG")
 
@@ -135,8 +134,8 @@ async def test_of_two_processes_of_one_device_the_first_stays_and_the_second_is_
     incumbent = supervisor.devices()["arm"]["incarnation"]
 
     newcomer = robot.device("arm")
-    await supervisor.until(lambda: "DEVICE_CONFLICT" in _errors(supervisor))
-    await newcomer.until(lambda: newcomer.get("/devices")["this"]["state"] == "conflict")
+    await supervisor.until(lambda: "DEVICE_CONFLICT" in supervisor.active_errors())
+    await newcomer.until(lambda: newcomer.get("/devices")["this"]["supervisor"] == "conflict")
 
     assert supervisor.devices()["arm"]["incarnation"] == incumbent
     assert supervisor.actual() == ALL_ACTIVE
@@ -144,10 +143,6 @@ async def test_of_two_processes_of_one_device_the_first_stays_and_the_second_is_
     assert newcomer.actual() == {"manipulator": ("unconfigured", None)}
     supervisor.ask("/nodes/manipulator/mode", mode="WEAK")
     assert newcomer.actual() == {"manipulator": ("unconfigured", None)}
-
-
-def _errors(computer: object) -> set[str]:
-    return {item["error"] for item in computer.get("/errors")["items"] if item["active"]}  # type: ignore[attr-defined]
 
 
 async def test_a_second_supervisor_is_refused_and_says_so(robot: RobotOfComputers) -> None:

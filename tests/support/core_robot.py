@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from domain.commands import Command, Drive, NodeCommand
+from domain.commands import Command, Drive, LinkCommand, NodeCommand
 from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, Input, TimePassed
@@ -41,6 +41,8 @@ class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
         self.events: list[RecordedEvent] = []
         self.commands: list[Command] = []
         """What was sent to nodes and vehicle."""
+        self.told_others: list[Command] = []
+        """What other computers of the robot were told."""
         self.advance(0)
 
     def give(self, given: Input) -> Outputs:
@@ -48,6 +50,9 @@ class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
         outputs = self.onboard.handle(given, self.now)
         self.events += outputs.events
         for command in outputs.commands:
+            if isinstance(command, LinkCommand):
+                self.told_others.append(command)
+                continue
             assert isinstance(command, NodeCommand | Drive), "goals stay on board"
             self.commands.append(command)
             self.robot.handle(command, self.now)

@@ -95,11 +95,14 @@ SHUTDOWN = {"transition": "shutdown"}
 
 ACTUATOR = {"part": "actuation"}
 BASE = {"part": "drive_base"}
+LOST_ARM = {"part": "arm", "error": "LOST"}
 ARM = {"part": "manipulator"}
 BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
 
 LOW_BATTERY = {"error": "BATTERY_LOW"}
+LOST_ARM = {"part": "arm", "error": "LOST"}
+"""Of a device, which a robot of one computer does not have."""
 OVER = {"active": False}
 KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
 CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
@@ -207,6 +210,14 @@ _HEALTH = (
         then_s=1,
     ),
     Asked("GET /devices", "A robot of one computer"),
+    Asked("POST /devices/{part}/errors/{error}/acknowledge", "There is no such device", LOST_ARM),
+    Asked(
+        "PUT /devices/{part}/errors/{error}/shelf",
+        "There is no such device",
+        LOST_ARM,
+        body={"for_s": 600, "reason": "its battery is being changed"},
+    ),
+    Asked("DELETE /devices/{part}/errors/{error}/shelf", "There is no such device", LOST_ARM),
     Asked("GET /monitors", "How fast the battery runs down"),
     Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
     Asked("GET /errors", "Those that are on", query={"active": "true"}),
@@ -240,6 +251,9 @@ _HEALTH = (
             ),
         )
     ),
+    Asked("POST /devices/{part}/errors/{error}/acknowledge", "No such device", LOST_ARM),
+    Asked("PUT /devices/{part}/errors/{error}/shelf", "No such device", LOST_ARM, body=KNOWN),
+    Asked("DELETE /devices/{part}/errors/{error}/shelf", "No such device", LOST_ARM),
     *(
         Asked(
             f"POST /{kind}/{{part}}/errors/{{error}}",

@@ -88,7 +88,7 @@ class Process:
         for _, given in self.inputs:
             if isinstance(given, PeerStops) and given.computer == computer:
                 told = {str(stop.id) for stop in given.stops}
-                engaged = told if given.is_all else engaged | told
+                engaged = told if given.ended is None else (engaged | told) - set(given.ended)
         return engaged
 
 
@@ -108,6 +108,8 @@ class Way:
     is_cut: bool = False
     keeps: bool = False
     """While it is cut: messages arrive once it is whole again."""
+    doubles: bool = False
+    """Each message arrives a second time, 50 ms later."""
     kept: list[Message] = field(default_factory=list)
 
 
@@ -184,12 +186,16 @@ class LinkedRobot:
 
     def mend(self, one: ComputerName, other: ComputerName) -> None:
         """Make both ways between two computers whole; what was kept arrives now."""
-        for sender, to in ((one, other), (other, one)):
-            way = self.way(sender, to)
-            way.is_cut = False
-            kept, way.kept = way.kept, []
-            for message in kept:
-                self._fly(sender, to, message, self.now)
+        self.mend_one(one, other)
+        self.mend_one(other, one)
+
+    def mend_one(self, sender: ComputerName, to: ComputerName) -> None:
+        """Make one way between two computers whole; what was kept arrives now."""
+        way = self.way(sender, to)
+        way.is_cut = False
+        kept, way.kept = way.kept, []
+        for message in kept:
+            self._fly(sender, to, message, self.now)
 
     def run(self, for_s: float) -> None:
         """Let time pass."""
@@ -243,6 +249,9 @@ class LinkedRobot:
             way = self.way(process.name, to)
             if not way.is_cut:
                 self._fly(process.name, to, message, self.now + way.delay)
+                if way.doubles:
+                    again = self.now + way.delay + seconds(0.05)
+                    self._fly(process.name, to, message, again)
             elif way.keeps:
                 way.kept.append(message)
 

@@ -9,8 +9,9 @@ from typing import Self
 from domain.computers import ComputerName
 from service.link.port import Link, LinkCounts
 
-_PATIENCE_S = 20.0
-_PROBE = b"probe"
+_PATIENCE_S = 10.0
+_PROBES = {b"probe beat": True, b"probe message": False}
+"""And whether they may be lost."""
 _PROBE_EVERY_S = 0.02
 
 
@@ -25,7 +26,7 @@ class RunningLink:
         self.when_heard: Callable[[ComputerName, bytes], None] = lambda _sender, _message: None
         """Called with each message, after it was noted."""
         self.task: asyncio.Task[None]
-        self.probed_by: set[ComputerName] = set()
+        self.probed_by: set[tuple[ComputerName, bytes]] = set()
         """Whose probes were heard."""
         self._more = asyncio.Event()
 
@@ -53,11 +54,13 @@ class RunningLink:
         self.link.send(to, message, may_be_lost=may_be_lost)
 
     async def reach(self, other: "RunningLink") -> None:
-        """Return once the other one hears this one."""
-        other.probed_by.discard(self.name)
+        """Return once the other one hears both kinds of messages of this one."""
+        probes = {(self.name, probe) for probe in _PROBES}
+        other.probed_by -= probes
         async with asyncio.timeout(_PATIENCE_S):
-            while self.name not in other.probed_by:
-                self.send(other.name, _PROBE, may_be_lost=True)
+            while not probes <= other.probed_by:
+                for probe, may_be_lost in _PROBES.items():
+                    self.send(other.name, probe, may_be_lost=may_be_lost)
                 with suppress(TimeoutError):
                     async with asyncio.timeout(_PROBE_EVERY_S):
                         await other.news()
@@ -88,8 +91,8 @@ class RunningLink:
 
     def _take(self, sender: ComputerName, message: bytes) -> None:
         self._more.set()
-        if message == _PROBE:
-            self.probed_by.add(sender)
+        if message in _PROBES:
+            self.probed_by.add((sender, message))
         else:
             self.received.append((sender, message))
             self.when_heard(sender, message)

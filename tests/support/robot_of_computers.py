@@ -58,9 +58,10 @@ class RobotOfComputers:
         """Start a device; without a folder it remembers nothing."""
         return self._started(device(name, *self._options(arguments)))
 
-    def all(self) -> tuple["Computer", "Computer", "Computer"]:
-        """Start the supervisor, the base and the arm, all at once."""
-        starts = (self.supervisor, partial(self.device, "base"), partial(self.device, "arm"))
+    def all(self, *arguments: str) -> tuple["Computer", "Computer", "Computer"]:
+        """Start the supervisor with its arguments, the base and the arm, all at once."""
+        supervisor = partial(self.supervisor, *arguments)
+        starts = (supervisor, partial(self.device, "base"), partial(self.device, "arm"))
         with ThreadPoolExecutor() as threads:
             supervisor, base, arm = threads.map(lambda start: start(), starts)
         return supervisor, base, arm
@@ -145,6 +146,11 @@ class Computer:
     def device_states(self) -> dict[str, str]:
         """Return how the connection to each device is."""
         return {name: item["state"] for name, item in self.devices().items()}
+
+    def active_errors(self) -> set[str]:
+        """Return the names of the errors that are active."""
+        errors = self.get("/errors")["items"]
+        return {item["error"] for item in errors if item["state"] == "active"}
 
     async def until(self, condition: Any, within_s: float = PATIENCE_S) -> float:  # noqa: ANN401
         """Wait until something holds; return how many seconds that took."""

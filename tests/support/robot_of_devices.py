@@ -45,7 +45,7 @@ class RobotOfDevices:
             settings: Of the core; None: the two devices, and readings that hold for ever.
         """
         self.model = model or actuation_model()
-        self.settings = settings or SupervisionSettings(devices=DEVICES)
+        self.settings = settings or SupervisionSettings(devices=DEVICES, peers=tuple(DEVICES))
         self.now: Instant = 0
         self.core = Supervision(self.model, self.settings, self.now)
         self.events: list[RecordedEvent] = []

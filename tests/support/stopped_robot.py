@@ -44,6 +44,8 @@ class Robot:
         """What was told in the last step."""
         self.kept: list[Kept | None] = []
         """What was kept in the last step."""
+        self.store: dict[tuple[type[Kept], str], Kept] = {}
+        """All that is kept."""
         self.outbox = Outbox()
         self.health = Health(default_signals(), self.outbox, now)
         self.stop = EmergencyStop(self.health, self.outbox, peers)
@@ -53,13 +55,21 @@ class Robot:
         return self._told()
 
     def release(self, by: str, reason: str, now: int, *stops: str) -> list[str]:
-        named = tuple(map(StopId, stops)) or None
+        """Release these stops; none named: all that are known."""
+        return self.release_named(by, reason, now, tuple(map(StopId, stops)) or None)
+
+    def release_named(
+        self, by: str, reason: str, now: int, named: tuple[StopId, ...] | None
+    ) -> list[str]:
+        """Release these stops, which may be none at all; None: all that are known."""
         self.stop.take_request(EmergencyStopRequest(False, reason, Actor(by), named), now)
         return self._told()
 
-    def hear(self, computer: ComputerName, now: int, *stops: PeerStop) -> list[str]:
+    def hear(
+        self, computer: ComputerName, now: int, *stops: PeerStop, is_all: bool = True
+    ) -> list[str]:
         """Hear which stops another computer has."""
-        self.stop.take_stops_of_peer(PeerStops(computer, stops), now)
+        self.stop.take_stops_of_peer(PeerStops(computer, stops, is_all), now)
         return self._told()
 
     def hear_release(self, computer: ComputerName, now: int, *stops: str) -> list[str]:
@@ -82,8 +92,12 @@ class Robot:
         self.stop.note_standstill(now)
         return self._told()
 
-    def restore(self, *kept: Kept, stop_because: str = "", run: str = "") -> list[str]:
-        restored = Restored(kept, stop_because=stop_because, run=run)
+    def restore(
+        self, *kept: Kept, stop_because: str = "", run: str = "", next_event: int = 1
+    ) -> list[str]:
+        """Go on as an earlier run left it."""
+        self.store = {(type(item), item.name): item for item in kept}
+        restored = Restored(kept, next_event=next_event, stop_because=stop_because, run=run)
         Restart(self.outbox).take_restored(restored, self.now)
         self.stop.restore(restored, self.now)
         return self._told()
@@ -91,6 +105,11 @@ class Robot:
     def _told(self) -> list[str]:
         outputs = self.outbox.take()
         self.kept = [item.value for item in outputs.kept]
+        for item in outputs.kept:
+            if item.value is None:
+                self.store.pop((item.kind, item.name), None)
+            else:
+                self.store[item.kind, item.name] = item.value
         self.commands = list(outputs.commands)
         events: tuple[RecordedEvent, ...] = outputs.events
         self.words = [event.event.words for event in events]

@@ -80,7 +80,7 @@ def _release_stop(
 
     A stop that is engaged meanwhile is not released: nobody saw it.
     """
-    body = {"engaged": False, "reason": reason, "volatile": is_volatile}
+    body: dict[str, object] = {"engaged": False, "reason": reason, "volatile": is_volatile}
     # A service of an earlier release does not tell single stops.
     if "stops" in before:
         body["stops"] = [stop["id"] for stop in before["stops"]]

@@ -1,7 +1,7 @@
 """Acknowledging and shelving of errors, of the robot itself and of its parts.
 
-Below `/errors` for the robot's own, below the path of a part for those of parts. Neither silences
-anything but the announcing: states, bits and reactions stay as they are.
+Below `/errors` for the robot's own, below the path of a part or a device for theirs. Neither
+silences anything but the announcing: states, bits and reactions stay as they are.
 """
 
 from functools import partial
@@ -25,7 +25,7 @@ from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/errors", tags=["health"], route_class=JsonRoute)
 part_router = APIRouter(route_class=JsonRoute)
-"""For the errors of parts; below `/systems` and `/nodes`."""
+"""For the errors of parts and devices; below `/systems`, `/nodes` and `/devices`."""
 
 ErrorPath = Annotated[str, Path(description="As in `GET /errors`")]
 

@@ -8,6 +8,7 @@ from api.http.dependencies import SupervisorDep
 from api.http.error_answers import ActiveQuery, answer_errors
 from api.http.route_policy import Permission, policy
 from api.http.schemas.errors import ErrorsJson
+from domain.computers import ComputerName
 from domain.errors import UnknownPartError
 from domain.state_and_mode import part_name
 
@@ -21,7 +22,8 @@ async def list_errors(
     *,
     active: ActiveQuery = None,
     part: Annotated[
-        str | None, Query(max_length=1_000, description="Only errors of this system or node")
+        str | None,
+        Query(max_length=1_000, description="Only errors of this system, node or device"),
     ] = None,
     open_: Annotated[
         bool,
@@ -31,9 +33,9 @@ async def list_errors(
         ),
     ] = False,
 ) -> Response:
-    """List the errors of the robot and of all its parts, also those that are normal.
+    """List the errors of the robot, of its devices and of all its parts, also the normal ones.
 
-    They are in the order of the model file; of `active=true` and `open=true`, in the order in which
+    They are in the order of their files; of `active=true` and `open=true`, in the order in which
     they came.
     """
     # What is due by now is an error by now.
@@ -43,7 +45,7 @@ async def list_errors(
         views = core.open_errors().values() if active or open_ else core.errors()
         return await answer_errors(supervisor, views, active)
     name = part_name(part)
-    if name not in supervisor.model:
+    if name not in supervisor.model and ComputerName(name) not in core.devices():
         raise UnknownPartError("part", name, supervisor.model.parts)
     of_part = (view for view in core.errors_of(name) if view.is_open or not open_)
     return await answer_errors(supervisor, of_part, active)

@@ -66,9 +66,7 @@ class Disk:
             vars(self).update({**backup, "_values": dict(backup["_values"])})  # type: ignore[call-overload]
         self._boot += 1
         values = tuple(self._values.values())
-        return Restored(
-            values, self._boot, self._next_event, self._changes + 1, run=run
-        )
+        return Restored(values, self._boot, self._next_event, self._changes + 1, run=run)
 
 
 class Computer:
@@ -104,6 +102,9 @@ class Computer:
         self.asleep_until: Instant = 0
         self.was_asleep = False
         """Whether its process has yet to notice that it slept."""
+        self.has_news = True
+        """Whether something happened since it was asked when something is due."""
+        self._wake_at: Instant | None = None
         self.unread: deque[tuple[ComputerName, Message]] = deque()
         """What came while the process was asleep."""
 
@@ -133,7 +134,13 @@ class Computer:
             self.was_asleep = True
 
     def wake_at(self) -> Instant | None:
-        """Return when something is due here."""
+        """Return when something is due here; found anew only if something happened here."""
+        if self.has_news:
+            self.has_news = False
+            self._wake_at = self._next_wake()
+        return self._wake_at
+
+    def _next_wake(self) -> Instant | None:
         if self.process is None:
             return self.nodes.wake_at()
         due = self.process.wake_at()

@@ -1,6 +1,5 @@
 """Who is connected: nobody that was not heard, or did not hear, for as long as the lease lasts."""
 
-from collections import deque
 from dataclasses import dataclass, field
 
 from domain.computers import SUPERVISOR, ComputerName, DeviceState, Incarnation
@@ -27,8 +26,10 @@ class _Peer:
     """Any beat under its name."""
     echoed: Instant | None = None
     """When the newest own beat was sent that was echoed."""
-    sent: deque[tuple[int, Instant]] = field(default_factory=lambda: deque(maxlen=500))
+    sent: dict[int, Instant] = field(default_factory=dict)
     """Own beats: their numbers, and when they were sent."""
+    last: int = 0
+    """Number of the last of them."""
 
 
 class LeaseOracle:
@@ -47,13 +48,14 @@ class LeaseOracle:
         if not isinstance(sending.message, Beat):
             return
         peer = self._peers[process.incarnation][sending.to]
+        assert sending.message.seq > peer.last, f"{sending} after number {peer.last}"
         if peer.sent:
-            number, at = peer.sent[-1]
-            assert sending.message.seq > number, f"{sending} after number {number}"
+            at = peer.sent[peer.last]
             allowed = self._period(process.name, sending.to) + SLACK
             slept = self._awake_since.get(process.incarnation, 0) > at
             assert slept or process.now - at <= allowed, f"{process.name} missed a beat: {sending}"
-        peer.sent.append((sending.message.seq, process.now))
+        peer.last = sending.message.seq
+        peer.sent[peer.last] = process.now
 
     @staticmethod
     def _period(one: ComputerName, other: ComputerName) -> Duration:
@@ -78,8 +80,7 @@ class LeaseOracle:
         peer = self._peers[process.incarnation][message.sender]
         peer.heard_at = process.now
         if message.heard == process.incarnation:
-            sent = (at for number, at in peer.sent if number == message.heard_seq)
-            at = next(sent, None)
+            at = peer.sent.get(message.heard_seq)
             if at is not None:
                 peer.echoed = max(at, peer.echoed or 0)
 

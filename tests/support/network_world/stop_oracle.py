@@ -36,6 +36,8 @@ class StopOracle:
         self.forgotten: set[StopId] = set()
         """Those of a process that was started again without the store that had them, or that is
         gone for good."""
+        self.gone_for_good: set[StopId] = set()
+        """Those of a process after which none was started."""
         self.counts = {"stops": 0, "told": 0}
         self._left: dict[str, frozenset[StopId]] = {}
 
@@ -52,7 +54,8 @@ class StopOracle:
 
     def gone(self, endpoint: str) -> None:
         """Note that nobody will start again what ended there."""
-        self.forgotten |= self._left.pop(endpoint, frozenset())
+        self.gone_for_good |= self._left.pop(endpoint, frozenset())
+        self.forgotten |= self.gone_for_good
 
     def asked(self, process: Process, request: Input) -> None:
         """Note what a person asks, before it happens."""

@@ -35,6 +35,8 @@ from tests.support.network_world.happenings import (
 from tests.support.network_world.robots import ARRANGEMENTS, MODEL, Arrangement
 
 ADA = Actor("ada", "http", "10.0.0.7")
+TRANSITIONS = tuple(t for t in Transition if t is not Transition.SHUTDOWN)
+"""Without the one from which there is no way back."""
 TROUBLE_S = 8.0
 """How long things go wrong; then the network is whole, and all runs."""
 GOOD_WIRE = Wire(delay=seconds(0.002), jitter=seconds(0.003))
@@ -76,6 +78,11 @@ def story_of(seed: int) -> Story:
     return Story(seed, arrangement, tuple(sorted(in_time, key=lambda d: d[0])), teller.wire)
 
 
+def newcomer_of(name: ComputerName) -> ComputerName:
+    """Return where the network finds a second computer of a name."""
+    return ComputerName(f"{name}#2")
+
+
 class _Teller:
     """Makes chapters: some happenings that belong together, such as a cut and its end."""
 
@@ -114,7 +121,7 @@ class _Teller:
         part = self.rng.choice(MODEL.parts)
         match self.rng.randrange(6):
             case 0:
-                return TransitionRequest(part, self.rng.choice(list(Transition)), ADA)
+                return TransitionRequest(part, self.rng.choice(TRANSITIONS), ADA)
             case 1:
                 speed = self.rng.choice((0.25, 1.0))
                 return ParametersRequest(BASE, {"max_speed": speed, "controller": "PID"}, ADA)
@@ -185,4 +192,9 @@ class _Teller:
     def newcomer(self, at: float) -> list[Dated]:
         """Start a second process of one name for a while."""
         name = self.rng.choice(self.computers)
-        return [(at, Newcomer(name)), (at + self.rng.choice(LENGTHS_S), NewcomerEnds(name))]
+        end = at + self.rng.choice(LENGTHS_S)
+        told: list[Dated] = [(at, Newcomer(name)), (end, NewcomerEnds(name))]
+        if self.rng.random() < 0.5:
+            pressed = EmergencyStopRequest(True, "there is another one", ADA)
+            told.append((self.rng.uniform(at, end), Ask(newcomer_of(name), pressed)))
+        return told

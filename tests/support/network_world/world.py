@@ -32,7 +32,7 @@ from tests.support.network_world.happenings import (
 from tests.support.network_world.oracles import Oracles
 from tests.support.network_world.processes import Process, Step, Surroundings
 from tests.support.network_world.robots import MODEL
-from tests.support.network_world.stories import Story
+from tests.support.network_world.stories import Story, newcomer_of
 
 CLOCKS_APART_S = 300.0
 
@@ -53,13 +53,14 @@ class World:
         """Whether messages are bytes on their way."""
         self.computers: dict[ComputerName, Computer] = {}
         """By endpoint."""
-        self._add(SUPERVISOR, story.arrangement.local_nodes)
+        self._add(SUPERVISOR, SUPERVISOR, story.arrangement.local_nodes)
         for name, device in story.arrangement.devices.items():
-            self._add(name, device.nodes)
+            self._add(name, name, device.nodes)
         self._left = list(reversed(story.happenings))
 
-    def _add(self, name: ComputerName, nodes: tuple[PartName, ...], mark: str = "") -> Computer:
-        endpoint = ComputerName(name + mark)
+    def _add(
+        self, name: ComputerName, endpoint: ComputerName, nodes: tuple[PartName, ...]
+    ) -> Computer:
         ahead = seconds(self.rng.uniform(0.0, CLOCKS_APART_S))
         model = SmhModel({node: MODEL.nodes[node] for node in nodes}, {})
         made = self.computers[endpoint] = Computer(name, endpoint, model, nodes, ahead)
@@ -136,11 +137,13 @@ class World:
             self.befall(self._left.pop()[1])
 
     def _let_act(self, computer: Computer) -> None:
+        due = computer.wake_at()
+        if due is None or due > self.now:
+            return
+        computer.has_news = True
         process = computer.process
         if process is None:
             computer.nodes.advance(self.now)
-            return
-        if computer.asleep_until > self.now:
             return
         if computer.was_asleep:
             computer.was_asleep = False
@@ -149,9 +152,7 @@ class World:
                 process.advance(self.now)
         while computer.unread:
             self._read(process, *computer.unread.popleft())
-        due = process.wake_at()
-        if due is not None and due <= self.now:
-            process.advance(self.now)
+        process.advance(self.now)
 
     # --- messages --------------------------------------------------------------------------------
 
@@ -180,6 +181,7 @@ class World:
         if computer.was_asleep:
             computer.unread.append((name, message))
         else:
+            computer.has_news = True
             self._read(computer.process, name, message)
 
     def _read(self, process: Process, sender: ComputerName, message: Message) -> None:
@@ -191,6 +193,7 @@ class World:
     def befall(self, happening: Happening) -> None:
         """Let something happen now."""
         for computer in self.computers.values():
+            computer.has_news = True
             computer.disk.back_up()
         match happening:
             case WireChanges(sender, to, wire):
@@ -212,10 +215,11 @@ class World:
 
     def ask(self, name: ComputerName, request: Input) -> PilothouseError | None:
         """Ask something at a computer; return why it is refused, or None."""
-        computer = self.computers[name]
-        if computer.process is None or computer.asleep_until > self.now:
+        computer = self.computers.get(name)
+        if computer is None or computer.process is None or computer.asleep_until > self.now:
             return PilothouseError("nobody answers")
         process = computer.process
+        computer.has_news = True
         with self.oracles.asked(process, request) as answer:
             answer.refusal = process.ask(request, self.now)
         return answer.refusal
@@ -226,10 +230,13 @@ class World:
             self._end_newcomer(name)
         for computer in self.computers.values():
             self._set_wires(computer)
+            computer.has_news = True
             computer.asleep_until = min(computer.asleep_until, self.now)
             for node in computer.node_names:
                 computer.mend(node, self.now)
             self._start(computer, Store.KEPT)
+        # What was sent before, and must not be lost, keeps what comes after it waiting.
+        self.run(to_seconds(self.network.empty_at() or self.now))
 
     def _crash(self, computer: Computer) -> None:
         if computer.process is not None:
@@ -268,11 +275,12 @@ class World:
         return f"{self.rng.getrandbits(128):032x}"
 
     def _begin_newcomer(self, name: ComputerName) -> None:
-        if ComputerName(name + "#2") not in self.computers:
-            self._start(self._add(name, self.computers[name].node_names, "#2"), Store.LOST)
+        if newcomer_of(name) not in self.computers:
+            nodes = self.computers[name].node_names
+            self._start(self._add(name, newcomer_of(name), nodes), Store.LOST)
 
     def _end_newcomer(self, name: ComputerName) -> None:
-        computer = self.computers.get(ComputerName(name + "#2"))
+        computer = self.computers.get(newcomer_of(name))
         if computer is not None:
             self._crash(computer)
             self.oracles.stops.gone(computer.endpoint)

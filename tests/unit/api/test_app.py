@@ -65,6 +65,8 @@ CONTRACT = {
     "/analysis": {"get"},
     "/emergency_stop": {"get", "put"},
     "/devices": {"get"},
+    "/devices/{part}/errors/{error}/acknowledge": {"post"},
+    "/devices/{part}/errors/{error}/shelf": {"put", "delete"},
     "/mock": {"get"},
     "/mock/{signal}": {"patch"},
     "/tasks": {"get", "post"},

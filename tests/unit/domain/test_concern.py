@@ -1,6 +1,6 @@
 import pytest
 
-from domain.concern import Concern, NotSettledError, settle
+from domain.concern import Concern, NotSettledError, Takers, overrides, settle, takers_of
 
 
 class Restless(Concern):
@@ -12,6 +12,17 @@ class Restless(Concern):
     def settle(self, now: int) -> bool:
         self.moves -= 1
         return self.moves >= 0
+
+
+class Taker(Concern):
+    """A concern that takes inputs."""
+
+    def __init__(self, takes: Takers) -> None:
+        self._takes = takes
+
+    @property
+    def takes(self) -> Takers:
+        return self._takes
 
 
 class Shy(Restless):
@@ -50,3 +61,27 @@ def test_concerns_that_never_settle_are_an_error_that_names_them() -> None:
 
     assert caught.value.moving == ("Restless", "Shy")
     assert str(caught.value) == "not settled after 50 rounds; still changing: Restless, Shy"
+
+
+def test_the_first_concern_that_takes_an_input_owns_it() -> None:
+    calls: list[str] = []
+
+    owner = Taker({int: lambda given, now: calls.append(f"owner {given} at {now}")})
+    follower = Taker(
+        {
+            int: lambda given, now: calls.append("follower"),
+            str: lambda given, now: calls.append("other"),
+        }
+    )
+
+    takers = takers_of([owner, follower])
+    for take in takers[int]:
+        take(7, 9)
+
+    assert calls == ["owner 7 at 9", "follower"]
+    assert len(takers[str]) == 1
+
+
+def test_a_concern_is_asked_only_for_what_it_has_of_its_own() -> None:
+    assert overrides(Restless(0), "settle")
+    assert not overrides(Restless(0), "pass_time")

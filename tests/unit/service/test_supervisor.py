@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Callable
 from itertools import takewhile
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -15,6 +16,7 @@ from domain.inputs import (
     BackendStatus,
     EmergencyStopRequest,
     HoldRequest,
+    Input,
     ReleaseRequest,
     TaskRequest,
 )
@@ -90,6 +92,12 @@ class Link:
 
     def send(self, command: LinkCommand) -> None:
         self.sent.append(command)
+
+    def note(self, _: Input) -> None:
+        """Learn nothing."""
+
+    def connection(self, _: ComputerName) -> NoReturn:
+        raise NotImplementedError
 
     async def run(self, _: Callable[[BackendMessage], None]) -> None:
         self.sent.append(ActAlone(autonomous=False))

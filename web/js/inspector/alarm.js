@@ -79,17 +79,18 @@ class Alarm extends HTMLElement {
     this.#fillBody();
   }
 
-  #showHead(error, below, { signals, parts }) {
+  #showHead(error, below, { signals, parts, devices }) {
     const { part, state } = error;
     // A root is as urgent as the worst that follows from it.
     const { severity } = worseBelow(error, below) ?? error;
-    this.#path = `${part === null ? "" : partPath(parts[part] ?? { kind: "node", name: part })}/errors/${encodeURIComponent(error.error)}`;
+    const owner = parts[part] ?? { kind: devices[part] ? "device" : "node", name: part };
+    this.#path = `${part === null ? "" : partPath(owner)}/errors/${encodeURIComponent(error.error)}`;
     setAttribute(this, "data-state", state);
     setAttribute(this, "data-severity", severity);
     showShape(this.shape, severity, isOn(error));
     setAttribute(this.details.firstChild, "title", errorName(error));
     setText(this.name, error.error);
-    renderOnce(this.owner, String(part), () => (part === null ? [] : namedParts(part)));
+    renderOnce(this.owner, String(part), () => (part === null ? [] : namedParts(owner)));
     renderOnce(this.tags, tagsOf(error).join(), () => tagsOf(error).map((tag) => el("span", { class: "tag" }, tag)));
     setText(this.message, plainMessage(error.message, signals));
   }
@@ -211,9 +212,9 @@ class Alarm extends HTMLElement {
 }
 
 /** "of front_left_whe…vation": the end of a long name tells it from others. */
-function namedParts(part) {
-  const [start, end] = splitName(part);
-  return [el("span", {}, `of ${start}`), el("span", { class: "end" }, end)];
+function namedParts({ kind, name }) {
+  const [start, end] = splitName(name);
+  return [el("span", {}, `of ${kind === "device" ? "device " : ""}${start}`), el("span", { class: "end" }, end)];
 }
 
 customElements.define("ph-alarm", Alarm);

@@ -60,6 +60,7 @@ export function causeWords(part, errors = NONE) {
 /** What follows from another error names that; else the error says what it is. */
 function errorWords({ part, error, message, caused_by: causes = NONE }) {
   if (error === "UNREACHABLE" && !causes[0]) return own(part, message) || "unreachable";
+  if (causes[0]?.error === "LOST") return `device ${causes[0].part} is lost`;
   const what = error.toLowerCase().replaceAll("_", " ");
   if (causes[0]) return `${what} because of ${[causes[0].part, causes[0].error].filter(Boolean).join(" ")}`;
   const said = own(part, message);

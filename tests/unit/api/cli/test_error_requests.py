@@ -59,3 +59,37 @@ def test_a_rejection_is_handed_on() -> None:
 
     with pytest.raises(ServiceProblemError, match="not now"):
         acknowledge(service.client(), "ESTOP")
+
+
+def test_an_error_of_a_device_is_found_by_its_name() -> None:
+    unknown = httpx.Response(404, json={"code": "UNKNOWN_PART", "detail": "no such part"})
+    service = AskedService(
+        {
+            "GET /systems/arm": unknown,
+            "GET /nodes/arm": unknown,
+            "GET /systems": {"items": []},
+            "GET /nodes": {"items": []},
+            "GET /devices": {"items": [{"device": "arm"}]},
+            "POST /devices/arm/errors/LOST/acknowledge": {},
+        }
+    )
+
+    acknowledge(service.client(), "arm.LOST")
+
+    assert [path for _, path, *_ in service.writes] == ["/devices/arm/errors/LOST/acknowledge"]
+
+
+def test_where_there_is_no_such_device_either_the_parts_are_named() -> None:
+    unknown = httpx.Response(404, json={"code": "UNKNOWN_PART", "detail": "no such part"})
+    service = AskedService(
+        {
+            "GET /systems/arm": unknown,
+            "GET /nodes/arm": unknown,
+            "GET /systems": {"items": [{"name": "robot"}]},
+            "GET /nodes": {"items": []},
+            "GET /devices": {"items": []},
+        }
+    )
+
+    with pytest.raises(ServiceProblemError, match="no system or node 'arm'"):
+        acknowledge(service.client(), "arm.LOST")

@@ -349,11 +349,18 @@ def test_its_stops_are_shown_also_while_it_is_lost(robot: RobotOfDevices) -> Non
     assert robot.device().stops == ("arm-7",)
     assert robot.device(BASE_COMPUTER).stops == ()
 
+    robot.restart()
+    assert robot.device().stops == ("arm-7",)
 
-def test_stops_of_who_is_no_device_are_not_shown(robot: RobotOfDevices) -> None:
-    robot.give(PeerStops(ComputerName("leg"), ()))
+    assert robot.give(PeerStops(ARM_COMPUTER, ())).devices == {"arm"}
+    assert robot.device().stops == ()
 
-    assert "leg" not in robot.core.devices()
+
+def test_stops_of_who_is_no_device_are_those_of_none(robot: RobotOfDevices) -> None:
+    stop = PeerStop(StopId("leg-7"), "ada", "smoke", 1)
+
+    assert robot.give(PeerStops(ComputerName("leg"), (stop,))).devices == frozenset()
+    assert [view.stops for view in robot.core.devices().values()] == [(), ()]
 
 
 def test_a_device_that_the_robot_does_not_have_is_refused(robot: RobotOfDevices) -> None:

@@ -51,6 +51,25 @@ def test_a_new_stop_of_a_computer_stops_before_its_last_one_ends() -> None:
     assert [stop.id for stop in robot.stop.view().stops] == ["arm-2"]
 
 
+def test_whoever_is_not_dealt_with_stops_the_robot_and_does_not_release_it() -> None:
+    robot = Robot(peers=(ARM,))
+    robot.hear(ARM, 7, stop_of_arm(1), is_all=False)
+    assert robot.hear(ARM, 8, is_all=False) == []
+    assert robot.hear(ARM, 9, stop_of_arm(2), is_all=False) == ["emergency_stop.peer_engaged"]
+
+    assert [stop.id for stop in robot.stop.view().stops] == ["arm-1", "arm-2"]
+    assert robot.stop.view().not_heard == (ARM,)
+    assert robot.hear(ARM, 10, stop_of_arm(2)) == ["emergency_stop.peer_released"]
+
+
+def test_nothing_is_known_of_the_connection_to_a_computer_that_the_robot_does_not_have() -> None:
+    robot = Robot(peers=(BASE,))
+    robot.hear(ARM, 7, stop_of_arm())
+    robot.connect(DeviceStatus(ARM, DeviceState.LOST), 8)
+
+    assert robot.reasons == ["emergency stop is engaged at device arm"]
+
+
 def test_a_stop_of_time_to_come_begins_now() -> None:
     robot = Robot(peers=(ARM,))
     robot.hear(ARM, 7, stop_of_arm(since=700))

@@ -74,7 +74,7 @@ def test_a_stop_is_news_once_and_counts_from_when_it_was_engaged() -> None:
     listener = Listener()
     listener.hears(A, 1, "s1", age_s=4)
 
-    assert listener.stops.news(is_all=True) == (own("s1", since_s=6), True)
+    assert listener.stops.news(is_all=True) == (own("s1", since_s=6), None)
     listener.hears(A, 2, "s1", age_s=4.2)
     assert listener.stops.news(is_all=True) is None
 
@@ -83,7 +83,17 @@ def test_it_is_news_that_a_computer_has_no_stop_once_it_is_dealt_with() -> None:
     stops = HeardStops()
 
     assert stops.news(is_all=False) is None
-    assert stops.news(is_all=True) == ((), True)
+    assert stops.news(is_all=True) == ((), None)
+
+
+def test_before_that_only_what_was_heard_can_end() -> None:
+    listener = Listener()
+    listener.hears(X, 1, "x1", "x2")
+    first = listener.stops.news(is_all=False)
+    listener.hears(X, 2, "x2")
+
+    assert first == (own("x1", "x2", since_s=10), ())
+    assert listener.stops.news(is_all=False) == (own("x2", since_s=10), ("x1",))
 
 
 def test_what_is_older_than_what_was_heard_is_no_news() -> None:

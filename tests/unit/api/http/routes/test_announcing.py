@@ -4,8 +4,10 @@ from typing import Any
 
 import pytest
 
+from domain.computers import DeviceState
 from domain.simulation.node_settings import Fault
 from tests.support.http_robot import HttpRobot
+from tests.support.robot_with_devices import ARM_COMPUTER, device_robot, status
 
 LOST = "/nodes/drive_base/errors/UNREACHABLE"
 LOW = "/errors/BATTERY_LOW"
@@ -143,3 +145,35 @@ async def test_the_errors_that_are_open_are_those_an_operator_may_want_to_see(
         ("BATTERY_LOW", "normal"),
     }
     assert len(listed["items"]) < 5
+
+
+async def test_that_a_device_was_lost_is_acknowledged_and_shelved_as_any_other_error() -> None:
+    path = "/devices/arm/errors/LOST"
+    async with device_robot() as (robot, _):
+        for state in (DeviceState.CONNECTED, DeviceState.LOST, DeviceState.CONNECTED):
+            robot.supervisor.deliver(status(ARM_COMPUTER, state))
+        assert (await error_of(robot, "LOST", "arm"))["state"] == "returned"
+
+        answer = await robot.http.post(f"{path}/acknowledge")
+        assert (answer.status_code, answer.json()["state"]) == (200, "normal")
+
+        answer = await robot.http.put(f"{path}/shelf", json=KNOWN)
+        assert answer.json()["shelved_because"] == KNOWN["reason"]
+        assert (await robot.http.delete(f"{path}/shelf")).status_code == 204
+        assert (await error_of(robot, "LOST", "arm"))["shelved_because"] is None
+
+
+@pytest.mark.parametrize("name", ["leg", "drive_base"])
+async def test_what_is_no_device_has_no_errors_of_one(name: str) -> None:
+    async with device_robot() as (robot, _):
+        answer = await robot.http.post(f"/devices/{name}/errors/LOST/acknowledge")
+
+    assert (answer.status_code, answer.json()["code"]) == (404, "UNKNOWN_PART")
+    assert answer.json()["hint"] == "known: base, arm"
+
+
+async def test_the_name_of_a_device_is_none_of_a_node() -> None:
+    async with device_robot() as (robot, _):
+        assert (await robot.http.get("/nodes/arm")).status_code == 404
+        assert (await robot.http.post("/nodes/arm/errors/LOST/acknowledge")).status_code == 404
+        assert (await robot.http.get("/errors?part=leg")).status_code == 404

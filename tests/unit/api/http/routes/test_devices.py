@@ -125,3 +125,27 @@ async def test_a_device_itself_says_whose_word_counts() -> None:
         },
     }
     assert (led["this"]["lead"], led["this"]["supervisor"]) == ("supervisor", "connected")
+
+
+async def test_the_errors_of_a_device_are_listed_acknowledged_and_shelved_by_its_name(
+    robot: HttpRobot,
+) -> None:
+    robot.supervisor.submit(status(ARM_COMPUTER))
+    robot.supervisor.submit(status(ARM_COMPUTER, DeviceState.LOST, "nothing was heard for 1.5 s"))
+    (lost,) = (await robot.get("/errors?part=arm&active=true"))["items"]
+    assert (lost["part"], lost["error"], lost["severity"]) == ("arm", "LOST", "urgent")
+
+    path = "/devices/arm/errors/LOST"
+    seen = await robot.http.post(f"{path}/acknowledge")
+    shelved = await robot.http.put(f"{path}/shelf", json={"for_s": 60, "reason": "it is mended"})
+
+    assert (seen.status_code, seen.json()["state"]) == (200, "acknowledged")
+    assert shelved.json()["shelved_until_at"] == "2026-01-01T00:01:00.000Z"
+    assert (await robot.http.delete(f"{path}/shelf")).status_code == 204
+
+
+async def test_a_device_that_there_is_not_is_unknown(robot: HttpRobot) -> None:
+    answer = await robot.http.post("/devices/leg/errors/LOST/acknowledge")
+
+    assert (answer.status_code, answer.json()["code"]) == (404, "UNKNOWN_PART")
+    assert "device" in answer.json()["detail"]

@@ -24,6 +24,8 @@ PART_FIELDS = {
     "deviation_reason",
     "reachable",
     "change",
+    "device",
+    "last_known",
 }
 
 NESTED = """\
