@@ -96,7 +96,15 @@ class Supervision:
         causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
         health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
-        self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
+        self.driving = Driving(
+            settings.tasks,
+            settings.vehicle,
+            health,
+            stop,
+            outbox,
+            start,
+            has_vehicle=settings.lead is None,
+        )
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
         # What is lost with a device follows from that from the start.

@@ -33,7 +33,7 @@ _OF_CHANGES = {
     BackendUnavailableError.code: "The whole backend is down; the request is answered with 503.",
     OwnedBySupervisorError.code: "Asked at a device: its supervisor is connected, and commands the "
     "part.",
-    OfflineError.code: "Asked at a device: it does not hear its supervisor, which commands the part.",
+    OfflineError.code: "Asked at a device: it does not hear its supervisor, who commands the part.",
     "FINALIZED": "A node is finalized: its process must be restarted.",
     "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
     "UNREACHABLE": "A node is unreachable.",

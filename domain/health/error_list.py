@@ -218,7 +218,7 @@ class ErrorList:
         if key not in self._latching:
             self._alarms.keep_no_longer(key)
         if key in self.on.contenders and self._first in self.on.contenders:
-            self._mark_first(min(self.on.contenders, key=self._rank))
+            self._note_rank(key)
         return True
 
     def take_as_start(self, key: ErrorKey) -> None:
@@ -427,6 +427,18 @@ class ErrorList:
         self._given.pop(key, None)
         if self.on.is_empty:
             self._mark_first(None)
+
+    def _note_rank(self, key: ErrorKey) -> None:
+        """Find which error was first anew, since one of those that can be has another rank.
+
+        A thousand nodes may be lost at once, of which none was first.
+        """
+        if key != self._first:
+            if self._rank(key) < self._rank(self._first):
+                self._mark_first(key)
+            return
+        are_on = (each for each in self.on.contenders if each in self.on)
+        self._mark_first(min(are_on, key=self._rank))
 
     def _rank(self, key: ErrorKey | None) -> tuple[bool, int, int]:
         """Return where an error stands in its step: roots first, then as in the file."""

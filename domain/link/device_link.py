@@ -156,6 +156,7 @@ class DeviceLink:
         if heard is Heard.NOTHING:
             self.drops.count(Drop.OLD)
         elif peer is self._supervisor:
+            self.peers.take_passed_on(beat, now, gathering)
             self._orders.follow(beat.incarnation)
             self._follow(beat, heard, now, gathering)
 
@@ -176,8 +177,11 @@ class DeviceLink:
             self.drops.count(Drop.OLD)
             return
         refusal = self._orders.find_refusal(order, self._session)
-        if not self._supervisor.lease.is_held:
+        lease = self._supervisor.lease
+        if not lease.is_held:
             refusal = f"device {self._own.name} was cut off from the supervisor"
+        elif not lease.was_sent_lately(order.heard_seq, now):
+            refusal = refusal or "it was on its way for too long"
         if refusal is None:
             self._orders.take(order)
             gathering.give(OrderReceived(order.command))
@@ -202,7 +206,7 @@ class DeviceLink:
     def _renew_session(self) -> None:
         self._session = Session(self._new_id())
 
-    def _says(self, peer: Peer) -> Said:
+    def _says(self, peer: Peer, now: Instant) -> Said:
         if peer is not self._supervisor:
             return Said()
         return Said(session=self._session, autonomous=self._autonomous)

@@ -55,6 +55,24 @@ class EngagedStop:
 
 
 @dataclass(frozen=True, slots=True)
+class StopsPassedOn:
+    """What one process of another computer said last of its stops, passed on by the supervisor.
+
+    Every computer tells every other one itself; two devices whose connection to each other is
+    broken learn of it so.
+    """
+
+    computer: ComputerName
+    incarnation: Incarnation
+    version: int
+    """Its `stops_version`."""
+    stops: tuple[EngagedStop, ...]
+    is_dealt_with: bool
+    """Whether it is the process that answers for its computer; no other one counts beside it that
+    is not passed on as well."""
+
+
+@dataclass(frozen=True, slots=True)
 class Refused:
     """An incarnation of the addressed computer that the sender does not deal with, and why."""
 
@@ -95,6 +113,9 @@ class Beat:
     releases: tuple[StopId, ...] = ()
     """Stops of the addressed computer that a person released at the sender."""
     refused: tuple[Refused, ...] = ()
+    passed_on: tuple[StopsPassedOn, ...] = ()
+    """From the supervisor: of computers on which a stop was engaged since it started; at once when
+    that changed, and else each second."""
 
 
 Told: TypeAlias = (
@@ -136,6 +157,9 @@ class NodeOrder:
     seq: int
     session: Session
     command: NodeCommand
+    heard_seq: int = 0
+    """Highest `seq` of a beat of the device: it knows when it sent that, and so how old the command
+    is at most. Commands may be held up while beats get through."""
 
 
 Message: TypeAlias = Beat | Report | NodeOrder

@@ -6,7 +6,7 @@ takes the place of a process that lives.
 """
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from domain.computers import (
     StopId,
 )
 from domain.link.lease import Lease
-from domain.link.messages import Beat, Terms
+from domain.link.messages import Beat, StopsPassedOn, Terms
 from domain.link.processes import Other, Others
 from domain.link.settings import LinkSettings
 from domain.link.stops import MAX_STOPS, HeardStops, OwnStops, StopsNews
@@ -52,6 +52,7 @@ class Said(NamedTuple):
     session: Session | None = None
     renew: Session | None = None
     autonomous: bool = False
+    passed_on: tuple[StopsPassedOn, ...] = ()
 
 
 class Heard(Enum):
@@ -111,6 +112,8 @@ class Peer:
         self._settings = settings
         self._others = Others(settings.lost)
         self._former = deque[Incarnation](maxlen=_MAX_FORMER)
+        self._began_at = start
+        """When the process that is dealt with was heard first."""
         self._acknowledged = 0
         """Version of our stops that it has taken in."""
 
@@ -200,7 +203,7 @@ class Peer:
         if lives and other.proven_after is None:
             other.proven_after = self.lease.next_seq - 1
         if refusal is None and (self.incarnation is None or self.lease.is_silent(now)):
-            self._adopt(beat.incarnation)
+            self._adopt(other)
             return self._hear_incumbent(beat, now, lives=lives)
         # Whoever it is: a stop is taken.
         stops = beat.stops
@@ -226,6 +229,36 @@ class Peer:
                 if stop in own and len(self.releases) < MAX_STOPS:
                     self.releases[stop] = None
 
+    def pass_on(self, now: Instant) -> list[StopsPassedOn]:
+        """Return what its processes said last of their stops."""
+        return [
+            StopsPassedOn(self.name, process, version, stops, process == self.incarnation)
+            for process, (version, stops) in self.stops.told(now).items()
+        ]
+
+    def take_passed_on(self, all_said: Sequence[StopsPassedOn], now: Instant) -> None:
+        """Take what the supervisor heard of its processes; a beat of their own says the same.
+
+        A process that was replaced there, and is silent here, has no stop any more.
+        """
+        for said in all_said:
+            self.stops.take(
+                said.incarnation,
+                said.version,
+                said.stops,
+                now,
+                lives=True,
+                is_dealt_with=said.is_dealt_with,
+            )
+        if not any(said.is_dealt_with for said in all_said):
+            return
+        present: set[Incarnation | None] = {said.incarnation for said in all_said}
+        if not self.lease.is_silent(now):
+            present.add(self.incarnation)
+        for process in self.stops.processes():
+            if process not in present and process not in self._others:
+                self.stops.replace(process)
+
     def stops_news(self) -> StopsNews | None:
         """Return its stops, if they are news; None: they are not."""
         return self.stops.news(is_all=self.was_connected)
@@ -250,6 +283,7 @@ class Peer:
             heard_stops=self.stops.version_of(self.incarnation),
             releases=tuple(self.releases),
             refused=self._others.refused(),
+            passed_on=said.passed_on,
         )
 
     # --- who answers -----------------------------------------------------------------------------
@@ -277,16 +311,16 @@ class Peer:
             return Refusal(SECOND_SUPERVISOR, "another supervisor is followed")
         return Refusal(DEVICE_CONFLICT, f"another process is device {self.name}")
 
-    def _adopt(self, process: Incarnation) -> None:
+    def _adopt(self, other: Other) -> None:
         """Deal with another process from now on."""
         if self.incarnation is not None:
             self._former.append(self.incarnation)
-        self.incarnation = process
+        self.incarnation, self._began_at = other.incarnation, other.first_heard_at
         self.heard_seq = self._acknowledged = 0
         self.refused_by = None
         self.releases.clear()
         self.lease.forget()
-        self._others.forget(process)
+        self._others.forget(other.incarnation)
 
     def _hear_incumbent(self, beat: Beat, now: Instant, *, lives: bool) -> Heard:
         if beat.seq <= self.heard_seq:
@@ -314,13 +348,17 @@ class Peer:
         self.stops.take(
             beat.incarnation, beat.stops_version, beat.stops, now, lives=lives, is_dealt_with=True
         )
+        if self.lease.is_held:
+            # What was on its way when its process ended is heard a little later.
+            until = self._began_at + self._settings.lost
+            self.stops.replace_those_before(beat.incarnation, until, now)
         self._drop_done_releases(beat.incarnation)
         if lives:
             self._refuse_who_lives(beat.heard_seq)
         return Heard.LEASE if begins else Heard.NEWS
 
     def _end_former(self) -> None:
-        """End the stops of processes that were replaced: this one tells which there are."""
+        """End the stops of processes that were dealt with before; this one tells its own."""
         for process in self._former:
             if process != self.incarnation:
                 self.stops.replace(process)

@@ -25,7 +25,7 @@ class Peers:
         settings: LinkSettings,
         close: Iterable[ComputerName],
         distant: Iterable[ComputerName],
-        says: Callable[[Peer], Said],
+        says: Callable[[Peer, Instant], Said],
         start: Instant,
     ) -> None:
         """Begin without having heard of anybody.
@@ -40,6 +40,8 @@ class Peers:
         """
         self.own = own
         self.stops = OwnStops()
+        self.stops_changes = 0
+        """How often the stops of another computer changed."""
         self._settings = settings
         self._says = says
         self._peers = {
@@ -92,6 +94,16 @@ class Peers:
                 gathering.give(StopsReleased(released, peer.name))
         return peer, heard
 
+    def take_passed_on(self, beat: Beat, now: Instant, gathering: Gathering) -> None:
+        """Take what a beat of the supervisor passes on, if it was sent just now."""
+        if not beat.passed_on or not self._peers[beat.sender].is_renewed_by(beat, now):
+            return
+        for peer in self:
+            said = [each for each in beat.passed_on if each.computer == peer.name]
+            if said and peer.name != beat.sender:
+                peer.take_passed_on(said, now)
+                self._tell_stops(peer, gathering)
+
     def tell(self, command: TellStops | AskRelease, now: Instant, gathering: Gathering) -> None:
         """Take a command of the core that concerns stops; what follows is said at once."""
         if isinstance(command, TellStops):
@@ -110,12 +122,13 @@ class Peers:
     def beat(self, peers: Iterable[Peer], now: Instant, gathering: Gathering) -> None:
         """Send a beat now."""
         for peer in peers:
-            gathering.send(peer.name, peer.beat(self._says(peer), now))
+            gathering.send(peer.name, peer.beat(self._says(peer, now), now))
             self._wakes[peer.name] = peer.wake_at()
 
     def _tell_stops(self, peer: Peer, gathering: Gathering) -> None:
         news = peer.stops_news()
         if news is not None:
+            self.stops_changes += 1
             gathering.give(PeerStops(peer.name, *news))
 
     def _meet(self, name: ComputerName, now: Instant) -> Peer | None:

@@ -17,6 +17,7 @@ class Other:
     """A process that is not dealt with: it waits, or it is refused."""
 
     incarnation: Incarnation
+    first_heard_at: Instant
     heard_at: Instant
     seq: int = 0
     refusal: Refusal | None = None
@@ -55,7 +56,7 @@ class Others:
         if other is None:
             if len(self._known) == _MAX_OTHERS:
                 self.forget(min(self, key=lambda known: known.heard_at).incarnation)
-            other = self._known[process] = Other(process, now)
+            other = self._known[process] = Other(process, now, now)
         return other
 
     def forget(self, process: Incarnation) -> None:

@@ -126,7 +126,8 @@ class RemoteDevice:
             return
         self._order_seq += 1
         own, session = self._own, self._session
-        order = NodeOrder(own.name, own.incarnation, self._order_seq, session, command)
+        seq, echo = self._order_seq, self.peer.heard_seq
+        order = NodeOrder(own.name, own.incarnation, seq, session, command, echo)
         gathering.send(self.peer.name, order)
 
     # --- the connection --------------------------------------------------------------------------

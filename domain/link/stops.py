@@ -37,10 +37,7 @@ class OwnStops:
 
     def told(self, now: Instant) -> tuple[EngagedStop, ...]:
         """Return them as they are told to others now."""
-        return tuple(
-            EngagedStop(stop.id, stop.by, stop.reason, max(now - stop.since, 0))
-            for stop in self._stops
-        )
+        return _told(self._stops, now)
 
     def take_release(self, asked: Iterable[StopId]) -> tuple[StopId, ...]:
         """Return those of the stops that somebody releases now, for the first time."""
@@ -54,6 +51,7 @@ class _StopsOf:
     """What one process says of its stops."""
 
     def __init__(self) -> None:
+        self.heard_at: Instant = 0
         self.version = -1
         self.stops: dict[StopId, PeerStop] = {}
 
@@ -69,9 +67,9 @@ class HeardStops:
     """The stops that are engaged on another computer, by the process that says so.
 
     Anybody who answers by its name can engage one. A stop ends when its own process no longer has
-    it, or when that process was replaced by another one that is dealt with: what a store did not
-    bring back is not engaged there. A stop of a process that is neither dealt with nor heard any
-    more is ended by a person who names it.
+    it, or when another one that is dealt with came after that process: what a store did not bring
+    back is not engaged there. A stop of a process that ran beside the one that is dealt with, and
+    is no longer heard, is ended by a person who names it.
     """
 
     def __init__(self) -> None:
@@ -116,6 +114,7 @@ class HeardStops:
             is_dealt_with: Whether it is the one that answers for its computer.
         """
         known = self._by.get(process) or _StopsOf()
+        known.heard_at = now
         if version <= known.version:
             return
         said = tuple(stops)[:MAX_STOPS]
@@ -137,6 +136,20 @@ class HeardStops:
         if replaced is not None:
             self._ended.extend(replaced.stops)
 
+    def replace_those_before(self, process: Incarnation, until: Instant, now: Instant) -> None:
+        """End all stops of processes that came before the one that is dealt with.
+
+        Args:
+            process: That one.
+            until: A process that was heard later than that ran beside it.
+            now: The current time; nothing is judged before `until`.
+        """
+        if len(self._by) == 1 or now < until:
+            return
+        for other, of in list(self._by.items()):
+            if other != process and of.heard_at < until:
+                self.replace(other)
+
     def end(self, process: Incarnation, stops: Iterable[StopId]) -> None:
         """End stops of a process that nobody can ask, and that a person names."""
         known = self._by.get(process)
@@ -145,6 +158,13 @@ class HeardStops:
                 known.stops.pop(stop, None)
             if not known.stops:
                 del self._by[process]
+
+    def told(self, now: Instant) -> dict[Incarnation, tuple[int, tuple[EngagedStop, ...]]]:
+        """Return by process what it said last: the version, and the stops as they are told now."""
+        return {
+            process: (max(known.version, 0), _told(known.stops.values(), now))
+            for process, known in self._by.items()
+        }
 
     def processes(self) -> tuple[Incarnation, ...]:
         """Return all processes that said something."""
@@ -168,3 +188,9 @@ class HeardStops:
     def _has_room_for(self, stops: Sequence[EngagedStop]) -> bool:
         """Tell whether one more process can be remembered; without a stop there is no need to."""
         return bool(stops) and len(self._by) < _MAX_PROCESSES
+
+
+def _told(stops: Iterable[PeerStop], now: Instant) -> tuple[EngagedStop, ...]:
+    return tuple(
+        EngagedStop(stop.id, stop.by, stop.reason, max(now - stop.since, 0)) for stop in stops
+    )

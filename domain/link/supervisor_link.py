@@ -9,6 +9,7 @@ from domain.link.drops import Drop, Drops
 from domain.link.gathering import Gathering
 from domain.link.messages import Beat, Message, Report, Terms
 from domain.link.outputs import LinkOutputs
+from domain.link.passing_on import PassingOn
 from domain.link.peer import Heard, Own, Peer, Said
 from domain.link.peers import Peers
 from domain.link.remote_device import RemoteDevice
@@ -44,6 +45,7 @@ class SupervisorLink:
         own = Own(SUPERVISOR, incarnation, terms)
         self.drops = Drops()
         self.peers = Peers(own, settings, devices, (), self._says, start)
+        self._passing_on = PassingOn(self.peers)
         self._devices = {
             name: RemoteDevice(self.peers[name], own, owned, settings, start)
             for name, owned in devices.items()
@@ -129,6 +131,8 @@ class SupervisorLink:
         elif peer.name in self._devices:
             self._devices[peer.name].take_beat(beat, now, gathering)
 
-    def _says(self, peer: Peer) -> Said:
+    def _says(self, peer: Peer, now: Instant) -> Said:
         device = self._devices.get(peer.name)
-        return Said() if device is None else device.says()
+        if device is None:
+            return Said()
+        return device.says()._replace(passed_on=self._passing_on.beat_says(peer, now))

@@ -62,6 +62,8 @@ class Driving(Concern):
         emergency_stop: EmergencyStop,
         outbox: Outbox,
         start: Instant,
+        *,
+        has_vehicle: bool = True,
     ) -> None:
         """Begin without a pose, and so with the hold `vehicle`.
 
@@ -72,7 +74,10 @@ class Driving(Concern):
             emergency_stop: Informed when the vehicle is at standstill.
             outbox: Receives commands and events.
             start: The current time.
+            has_vehicle: Whether this computer drives the vehicle; otherwise nothing waits for its
+                pose, and what is reported of one is left aside.
         """
+        self._has_vehicle = has_vehicle
         self.limits = limits
         self.watch = VehicleWatch(settings, outbox)
         """The vehicle state; navigation uses it too."""
@@ -85,7 +90,8 @@ class Driving(Concern):
         self._kept: dict[str, KeptHold] = {}
         """The holds that are kept over a restart, by owner."""
         # The initial state is not an event.
-        self._planner.holds.set(VEHICLE_HOLD, "the vehicle never reported a pose", "", start)
+        if has_vehicle:
+            self._planner.holds.set(VEHICLE_HOLD, "the vehicle never reported a pose", "", start)
         if self._followed:
             self._planner.holds.set(ERROR_HOLD, _words(self._followed), "", start)
 
@@ -134,6 +140,8 @@ class Driving(Concern):
 
     def _take_report(self, report: VehicleReport, now: Instant) -> None:
         self.watch.check(report)
+        if not self._has_vehicle:
+            return
         pose = report.state.pose
         self._outbox.begin(now, VehicleReported(pose.x_m, pose.y_m, report.state.speed_mps))
         was_lost = self.watch.is_lost

@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Route, expect
 
 from tests.browser.places import header, sentence, stop
 from tests.browser.states import aborted, drive, patched
@@ -137,6 +137,31 @@ def test_a_stop_of_somebody_else_says_when_it_was_engaged(desktop: Page, service
     steps = header(desktop).get_by_role("list", name="Emergency stop").get_by_role("listitem")
     expect(steps.first).to_have_text(re.compile(r"^ENGAGED\d\d:\d\d:\d\d$"))
     expect(desktop.locator("ph-stop-release")).to_contain_text("smoke in hall 3")
+
+
+def test_a_stop_on_a_lost_device_says_where_it_has_to_be_released(
+    desktop: Page, service: Service
+) -> None:
+    at = "2026-01-01T00:00:00.000Z"
+    stop_there = {"id": "arm-7", "device": "arm", "by": "bert", "reason": "smoke", "since_at": at}
+    latch = {"engaged": True, "by": "bert", "reason": "smoke", "since_at": at}
+    latch |= {"standstill_at": None, "stops": [stop_there], "waits_for": [], "not_heard": ["arm"]}
+    patched(lambda frame: frame.update(emergency_stop=latch))(desktop, service)
+    asked: list[object] = []
+
+    def answer(route: Route) -> None:
+        asked.append(route.request.post_data_json)
+        route.fulfill(json=latch)
+
+    desktop.route("**/emergency_stop", answer)
+    band = desktop.locator("ph-stop-release")
+    expect(band).to_contain_text("Emergency stop engaged at device arm (not heard) at ")
+    press(band.get_by_role("button", name="Release the stop (hold)"), desktop)
+    expect(band.get_by_role("alert")).to_have_text(
+        "Still engaged at device arm (not heard). Release it there.", timeout=SLOW_MS
+    )
+    reason = "released on the monitor page"
+    assert asked == [{"engaged": False, "reason": reason, "stops": ["arm-7"]}]
 
 
 def test_a_scheme_is_chosen_and_kept_over_a_reload(desktop: Page) -> None:

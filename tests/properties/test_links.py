@@ -50,6 +50,13 @@ class Delay(NamedTuple):
     delay_s: float
 
 
+class HoldUp(NamedTuple):
+    """Commands and reports take longer than beats."""
+
+    way: Way
+    by_s: float
+
+
 class Double(NamedTuple):
     """Each message arrives twice, or no longer."""
 
@@ -75,7 +82,7 @@ class Press(NamedTuple):
     name: ComputerName
 
 
-Step: TypeAlias = Cut | Mend | Delay | Double | Restart | ChangeOfState | Press
+Step: TypeAlias = Cut | Mend | Delay | HoldUp | Double | Restart | ChangeOfState | Press
 Story: TypeAlias = list[tuple[float, Step]]
 
 WAYS = st.sampled_from([Way(SUPERVISOR, BASE), Way(BASE, SUPERVISOR)])
@@ -83,6 +90,7 @@ STEPS: st.SearchStrategy[Step] = st.one_of(
     st.builds(Cut, WAYS, st.booleans()),
     st.builds(Mend, WAYS),
     st.builds(Delay, WAYS, st.sampled_from([0.0, 0.02, 0.2])),
+    st.builds(HoldUp, WAYS, st.sampled_from([0.0, 1.0, 2.5, 6.0])),
     st.builds(Double, WAYS),
     st.builds(Restart, NAMES, st.sampled_from([0.0, 2.0])),
     st.builds(ChangeOfState, st.sampled_from(STATES)),
@@ -121,6 +129,8 @@ class Life:
                 robot.mend_one(*way)
             case Delay(way, delay_s):
                 robot.way(*way).delay = seconds(delay_s)
+            case HoldUp(way, by_s):
+                robot.way(*way).order_delay = seconds(by_s)
             case Double(way):
                 robot.way(*way).doubles = not robot.way(*way).doubles
             case Restart(name, down_s):
@@ -145,6 +155,7 @@ class Life:
         for way in ((SUPERVISOR, BASE), (BASE, SUPERVISOR)):
             self.robot.mend_one(*way)
             self.robot.way(*way).delay = seconds(0.001)
+            self.robot.way(*way).order_delay = 0
             self.robot.way(*way).doubles = False
         self.robot.run(5)
 

@@ -19,7 +19,7 @@ from domain.inputs import (
 )
 from domain.lifecycle import LifecycleState, Transition
 from domain.link.device_link import DeviceLink
-from domain.link.messages import Message, NodeOrder, Terms, Told
+from domain.link.messages import Beat, Message, NodeOrder, Terms, Told
 from domain.link.outputs import LinkOutputs
 from domain.link.settings import Owned
 from domain.link.supervisor_link import SupervisorLink
@@ -108,6 +108,8 @@ class Way:
     is_cut: bool = False
     keeps: bool = False
     """While it is cut: messages arrive once it is whole again."""
+    order_delay: Duration = 0
+    """How much longer commands and reports take than beats."""
     doubles: bool = False
     """Each message arrives a second time, 50 ms later."""
     kept: list[Message] = field(default_factory=list)
@@ -248,10 +250,11 @@ class LinkedRobot:
             self.sent.append((self.now, to, message))
             way = self.way(process.name, to)
             if not way.is_cut:
-                self._fly(process.name, to, message, self.now + way.delay)
+                extra = 0 if isinstance(message, Beat) else way.order_delay
+                arrives = self.now + way.delay + extra
+                self._fly(process.name, to, message, arrives)
                 if way.doubles:
-                    again = self.now + way.delay + seconds(0.05)
-                    self._fly(process.name, to, message, again)
+                    self._fly(process.name, to, message, arrives + seconds(0.05))
             elif way.keeps:
                 way.kept.append(message)
 

@@ -66,10 +66,14 @@ class Robot:
         return self._told()
 
     def hear(
-        self, computer: ComputerName, now: int, *stops: PeerStop, is_all: bool = True
+        self,
+        computer: ComputerName,
+        now: int,
+        *stops: PeerStop,
+        ended: tuple[StopId, ...] | None = None,
     ) -> list[str]:
-        """Hear which stops another computer has."""
-        self.stop.take_stops_of_peer(PeerStops(computer, stops, is_all), now)
+        """Hear which stops another computer has, and which of them ended; None: all others."""
+        self.stop.take_stops_of_peer(PeerStops(computer, stops, ended), now)
         return self._told()
 
     def hear_release(self, computer: ComputerName, now: int, *stops: str) -> list[str]:

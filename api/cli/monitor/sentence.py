@@ -79,6 +79,8 @@ def stop_sentence(view: View) -> Sentence | None:
 
 def standstill_words(robot: Robot) -> str:
     """Return whether the vehicle stands under the emergency stop."""
+    if robot.this_device is not None:
+        return "the vehicle is the supervisor's to stop"
     moves = _moving_at(robot)
     if robot.system_state is not None and alarm_of(robot.system_state):
         at = "may be moving" if moves is None else f"still moves at {words.speed(moves)}"

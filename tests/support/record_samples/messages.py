@@ -14,7 +14,16 @@ from domain.inputs import (
     SourceFault,
 )
 from domain.lifecycle import LifecycleState, Transition
-from domain.link.messages import Beat, EngagedStop, Message, NodeOrder, Refused, Report, Terms
+from domain.link.messages import (
+    Beat,
+    EngagedStop,
+    Message,
+    NodeOrder,
+    Refused,
+    Report,
+    StopsPassedOn,
+    Terms,
+)
 from domain.state_and_mode import ModeName, PartName
 
 _TERMS = Terms(model="1b" * 32, ownership="2c" * 32, protocol=1, version="0.9.1")
@@ -47,6 +56,15 @@ MESSAGES: Mapping[str, tuple[Message, ...]] = {
                     incarnation=Incarnation("b4" * 16),
                     code="SECOND_SUPERVISOR",
                     message="another supervisor is dealt with",
+                ),
+            ),
+            passed_on=(
+                StopsPassedOn(
+                    computer=ComputerName("base"),
+                    incarnation=Incarnation("e1" * 16),
+                    version=2,
+                    stops=(EngagedStop(id=StopId("base-e1e1-3"), by="ben", reason="", age=0),),
+                    is_dealt_with=True,
                 ),
             ),
         ),

@@ -61,6 +61,7 @@ export function robotSentence(state) {
 
 /** Whether the vehicle stands under the emergency stop. */
 export function standstillWords(state) {
+  if (state.ownDevice) return "the vehicle is the supervisor's to stop";
   const moves = movingAt(state);
   if (ALARMS[state.systemState?.reasons[0]?.code])
     return moves === null

@@ -40,7 +40,9 @@ def an_order(robot: LinkedRobot, seq: int = 50) -> NodeOrder:
     incarnation = robot.supervisor.machine.peers.own.incarnation
     assert isinstance(robot.base.machine, DeviceLink)
     command = AskTransition(700 + seq, DRIVE, Transition.CONFIGURE)
-    return NodeOrder(SUPERVISOR, incarnation, seq, robot.base.machine.session, command)
+    heard_seq = robot.supervisor.machine.peers[BASE].heard_seq
+    session = robot.base.machine.session
+    return NodeOrder(SUPERVISOR, incarnation, seq, session, command, heard_seq)
 
 
 # --- whom it follows -----------------------------------------------------------------------------
@@ -192,6 +194,21 @@ def test_a_command_of_an_earlier_session_is_answered_with_its_reason() -> None:
 
     reason = "it was sent before the connection to the supervisor was lost"
     assert robot.supervisor.answers == [NodeAnswer(750, DRIVE, False, reason)]
+
+
+def test_a_command_that_was_held_up_while_beats_got_through_is_refused() -> None:
+    robot = connected()
+    robot.way(SUPERVISOR, BASE).order_delay = seconds(1)
+    robot.order()
+    robot.run(1.1)
+    in_time = len(robot.base.orders)
+    robot.way(SUPERVISOR, BASE).order_delay = seconds(2)
+    request = robot.order()
+    robot.run(2.1)
+
+    assert in_time == len(robot.base.orders) == 1
+    reason = "it was on its way for too long"
+    assert robot.supervisor.answers == [NodeAnswer(request, DRIVE, False, reason)]
 
 
 def test_while_it_is_cut_off_it_carries_out_no_command() -> None:

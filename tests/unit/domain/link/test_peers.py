@@ -196,6 +196,23 @@ def test_a_stop_that_the_store_lost_ends_once_the_new_process_is_dealt_with() ->
     assert robot.devices[ARM].stops_of(BASE) == set()
 
 
+def test_a_stop_of_a_process_that_crashed_at_once_ends_with_the_next_one() -> None:
+    robot = connected()
+    robot.kill(robot.base)
+    crashed = robot.start(BASE)
+    robot.engage(crashed, "b1")
+    robot.run(0.1)
+    robot.kill(crashed)
+    robot.start(BASE)
+    robot.run(1)
+    before = robot.supervisor.stops_of(BASE)
+    robot.run(4)
+
+    assert before == {"b1"}
+    assert robot.supervisor.stops_of(BASE) == set()
+    assert robot.devices[ARM].stops_of(BASE) == set()
+
+
 def test_a_process_that_nobody_hears_any_more_and_that_was_refused_is_released_by_name() -> None:
     robot = connected()
     newcomer = robot.start(BASE)

@@ -163,6 +163,6 @@ def test_commands_are_numbered() -> None:
 
     sent = [message for _, message in heard.gathering.take().sendings]
     assert sent == [
-        NodeOrder(SUPERVISOR, WE, 1, FIRST, AskFacts(7, DRIVE)),
-        NodeOrder(SUPERVISOR, WE, 2, FIRST, AskFacts(8, DRIVE)),
+        NodeOrder(SUPERVISOR, WE, 1, FIRST, AskFacts(7, DRIVE), 1),
+        NodeOrder(SUPERVISOR, WE, 2, FIRST, AskFacts(8, DRIVE), 1),
     ]

@@ -4,9 +4,11 @@ from dataclasses import replace
 import pytest
 
 from domain.actor import SERVICE
+from domain.computers import ComputerName
+from domain.devices.settings import LeadSettings
 from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
 from domain.identifiers import TaskId
-from domain.inputs import DriveStatus, HoldRequest, Restored, VehicleReport
+from domain.inputs import DriveStatus, HoldRequest, Restored, TimePassed, VehicleReport
 from domain.kept import Kept, KeptHold, KeptProgress, KeptTask
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
@@ -31,6 +33,18 @@ def test_the_first_pose_lets_go() -> None:
 
     assert dict(robot.core.driving.holds) == {}
     assert robot.happened("hold.released") == [{"owner": "vehicle"}]
+
+
+def test_a_device_has_no_vehicle_and_waits_for_no_pose() -> None:
+    settings = SupervisionSettings(lead=LeadSettings(ComputerName("arm")))
+    core = Supervision(SmhModel({}, {}), settings, 0)
+    assert "vehicle" not in core.driving.holds
+
+    core.handle(VehicleReport(VehicleState(Pose(0.0, 0.0, 0.0), 1.0, 0.0)), seconds(1))
+    core.handle(TimePassed(), seconds(9))
+
+    assert "vehicle" not in core.driving.holds
+    assert core.driving.vehicle.state is None
 
 
 def test_errors_at_the_start_hold_without_an_event() -> None:
