@@ -498,8 +498,8 @@ def test_what_a_device_was_changing_alone_is_canceled() -> None:
 def test_a_step_that_was_canceled_keeps_no_order_waiting() -> None:
     robot = following(offline(drive_base="active.SLOW"))
     robot.lose()
-    robot.advance(0.6)
     robot.fault("drive_base", Fault.DIE)
+    robot.advance(0.6)
     robot.connect()
     robot.fault("drive_base", None)
 
