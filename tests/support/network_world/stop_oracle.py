@@ -81,7 +81,8 @@ class StopOracle:
         seen.newest[message.incarnation] = message.seq
         told = {stop.id for stop in message.stops}
         self.counts["told"] += bool(told)
-        missing = told - self._all(process)
+        # Of the end of a stop it may have heard on another way, before.
+        missing = {stop for stop in told - self._all(process) if self._is_engaged(stop)}
         assert not missing, f"{process.name} was told of {missing}, and is not stopped by it"
 
     def took(self, process: Process, step: Step) -> None:
@@ -104,6 +105,10 @@ class StopOracle:
                     isinstance(command, AskTransition) and command.transition is Transition.ACTIVATE
                 )
                 assert not is_activation, f"{command} by {process.name}, which is stopped"
+
+    def _is_engaged(self, stop: StopId) -> bool:
+        owner = self._owners[stop]
+        return stop in self._seen[owner.incarnation].own
 
     def _is_replaced(self, stop: StopId) -> bool:
         """Tell whether a younger process of the same name may have taken the place of its owner.
