@@ -72,3 +72,11 @@ def test_what_somebody_could_get_wrong_is_found(
     monkeypatch.setattr(*FAULTS[fault])
 
     assert any(isinstance(fault_of(story_of(number)), str) for number in range(100))
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_a_story_goes_the_same_whenever_it_is_told(number: int) -> None:
+    first, again = (tell(story_of(number)).oracles.runs for _ in range(2))
+
+    assert [run.incarnation for run in first] == [run.incarnation for run in again]
+    assert [run.steps for run in first] == [run.steps for run in again]

@@ -11,7 +11,7 @@ from domain.state_and_mode import ModeName, PartName
 from domain.supervision import Supervision
 from tests.support.models import ACTUATION, ARM, BASE, PERFORMANCE
 from tests.support.network_world.robots import LIDAR, MODEL
-from tests.support.network_world.stories import ADA, TROUBLE_S
+from tests.support.network_world.stories import ADA, CUT, TROUBLE_S
 from tests.support.network_world.world import World
 
 WHOLE_S = 5.0
@@ -133,7 +133,7 @@ def a_device_that_is_cut_off_does_what_it_should(world: World) -> None:
     name = world.rng.choice(list(world.story.arrangement.devices))
     offline = world.story.arrangement.devices[name].offline
     before = {node: world.owner(node).nodes.state_of(node) for node in MODEL.nodes}
-    _set_all_wires(world, name, Wire(is_cut=True))
+    set_all_wires(world, name, CUT)
     world.wait(4.0)
     for node, was in before.items():
         wanted = offline.targets[node].state if node in offline.targets else was
@@ -141,7 +141,7 @@ def a_device_that_is_cut_off_does_what_it_should(world: World) -> None:
         assert state is wanted, f"{node} is {state} while {name} is cut off"
         shown = world.supervisor.core.part(node)
         assert shown.reachable is (node not in world.computers[name].node_names), f"{shown}"
-    _set_all_wires(world, name, world.story.wire)
+    set_all_wires(world, name, world.story.wire)
     world.wait(WHOLE_S)
     for node in offline.targets:
         state = world.owner(node).nodes.state_of(node)
@@ -150,7 +150,8 @@ def a_device_that_is_cut_off_does_what_it_should(world: World) -> None:
         assert world.supervisor.core.part(node).converged is is_restored
 
 
-def _set_all_wires(world: World, name: ComputerName, wire: Wire) -> None:
+def set_all_wires(world: World, name: ComputerName, wire: Wire) -> None:
+    """Let all wires from and to a computer be so."""
     for other in world.computers:
         if other != name:
             world.network.set_wire(world.now, name, other, wire)

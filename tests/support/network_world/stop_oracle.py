@@ -11,7 +11,6 @@ from domain.link.outputs import Sending
 from domain.timebase import Instant, seconds
 from tests.support.network_world.processes import Process, Step
 
-
 FRESH = seconds(1.0)
 """What was sent within it is no echo of before a loss."""
 

@@ -41,6 +41,7 @@ TROUBLE_S = 8.0
 """How long things go wrong; then the network is whole, and all runs."""
 GOOD_WIRE = Wire(delay=seconds(0.002), jitter=seconds(0.003))
 FAR_WIRE = replace(GOOD_WIRE, delay=seconds(0.03))
+CUT = Wire(is_cut=True)
 LENGTHS_S = (0.2, 0.45, 0.6, 1.0, 1.4, 1.6, 1.9, 2.2, 3.0, 4.5)
 """Of a trouble: around the limits of the lease, and far from them."""
 
