@@ -66,9 +66,9 @@ def test_whoever_is_not_dealt_with_stops_the_robot_and_releases_only_its_own_sto
 
 def test_whoever_is_not_dealt_with_releases_what_it_engaged_itself() -> None:
     robot = Robot(peers=(ARM,))
-    robot.hear(ARM, 7, stop_of_arm(1), stop_of_arm(2), is_all=False)
+    robot.hear(ARM, 7, stop_of_arm(1), stop_of_arm(2), ended=())
 
-    assert robot.hear(ARM, 8, stop_of_arm(2), is_all=False, ended=("arm-1",)) == [
+    assert robot.hear(ARM, 8, stop_of_arm(2), ended=(stop_of_arm(1).id,)) == [
         "emergency_stop.peer_released"
     ]
     assert [stop.id for stop in robot.stop.view().stops] == ["arm-2"]
