@@ -107,7 +107,6 @@ def _resources() -> list[BaseRoute]:
         )
         for resource in of_parts:
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
-    router.include_router(announcing.part_router, prefix="/devices", tags=["devices"])
     return router.routes
 
 
