@@ -54,20 +54,13 @@ async def _part(part: PartPath, request: Request, supervisor: SupervisorDep) -> 
 
 
 def _kind(request: Request) -> str:
-    """Return what a path is about: a system, a node, or a device, which has errors as these do."""
-    kinds = ("system", "device")
-    return next((kind for kind in kinds if request.url.path.startswith(f"/{kind}s/")), "node")
+    return "system" if request.url.path.startswith("/systems/") else "node"
 
 
 def known_of_kind(request: Request, supervisor: Supervisor) -> Collection[PartName]:
-    """Return the parts of the kind that the path of a request asks for, or the devices."""
+    """Return the parts of the kind that the path of a request asks for."""
     model = supervisor.model
-    match _kind(request):
-        case "system":
-            return model.systems.keys()
-        case "device":
-            return [PartName(name) for name in supervisor.core.devices()]
-    return model.nodes.keys()
+    return model.systems.keys() if _kind(request) == "system" else model.nodes.keys()
 
 
 def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
@@ -82,8 +75,6 @@ def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
     name = part_name(part)
     if name in known:
         return name
-    if kind == "device":
-        raise UnknownPartError(kind, name, tuple(known))
     if name in supervisor.model:
         path = request.url.path.replace(part, name, 1)
         raise UnknownPartError.of_other_kind(name, kind, _hint(supervisor.model, kind, name, path))

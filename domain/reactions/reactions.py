@@ -54,6 +54,9 @@ _PENDING = Standing(ReactionState.PENDING)
 class Reactions(Concern):
     """Decides which reactions act, and lets them."""
 
+    _was_stopped = False
+    _stop_ended_at: Instant | None = None
+
     def __init__(
         self,
         reactions: list[Reaction],
@@ -102,8 +105,7 @@ class Reactions(Concern):
         self._views = ReactionViews(reactions, self._budgets, self._triggers, outbox)
         self._revision: int | None = None
         """That of the conditions when they were judged last; None: all have to be."""
-        self._was_waiting = self._was_stopped = False
-        self._stop_ended_at: Instant | None = None
+        self._was_waiting = parts.awaits_devices
 
     # --- what happens ----------------------------------------------------------------------------
 

@@ -95,7 +95,6 @@ SHUTDOWN = {"transition": "shutdown"}
 
 ACTUATOR = {"part": "actuation"}
 BASE = {"part": "drive_base"}
-LOST_ARM = {"part": "arm", "error": "LOST"}
 ARM = {"part": "manipulator"}
 BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
@@ -251,9 +250,6 @@ _HEALTH = (
             ),
         )
     ),
-    Asked("POST /devices/{part}/errors/{error}/acknowledge", "No such device", LOST_ARM),
-    Asked("PUT /devices/{part}/errors/{error}/shelf", "No such device", LOST_ARM, body=KNOWN),
-    Asked("DELETE /devices/{part}/errors/{error}/shelf", "No such device", LOST_ARM),
     *(
         Asked(
             f"POST /{kind}/{{part}}/errors/{{error}}",

@@ -392,7 +392,8 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
                 ),
             ),
         ),
-        PeerStops(computer=SUPERVISOR, stops=()),
+        PeerStops(computer=SUPERVISOR, stops=(), ended=(StopId("supervisor-a5a5-3"),)),
+        PeerStops(computer=SUPERVISOR, stops=(), ended=None),
     ),
     "stops_released": (
         StopsReleased(stops=(StopId("arm-0f0f-3"),), computer=SUPERVISOR),

@@ -9,12 +9,23 @@ from domain.inputs import (
     ErrorReport,
     NodeAnswer,
     NodeReport,
+    ReactionReport,
     Reading,
     Readings,
     SourceFault,
 )
 from domain.lifecycle import LifecycleState, Transition
-from domain.link.messages import Beat, EngagedStop, Message, NodeOrder, Refused, Report, Terms
+from domain.link.messages import (
+    Beat,
+    EngagedStop,
+    Message,
+    NodeOrder,
+    Refused,
+    Report,
+    StopsPassedOn,
+    Terms,
+)
+from domain.reaction_terms import ReactionState
 from domain.state_and_mode import ModeName, PartName
 
 _TERMS = Terms(model="1b" * 32, ownership="2c" * 32, protocol=1, version="0.9.1")
@@ -47,6 +58,15 @@ MESSAGES: Mapping[str, tuple[Message, ...]] = {
                     incarnation=Incarnation("b4" * 16),
                     code="SECOND_SUPERVISOR",
                     message="another supervisor is dealt with",
+                ),
+            ),
+            passed_on=(
+                StopsPassedOn(
+                    computer=ComputerName("base"),
+                    incarnation=Incarnation("e1" * 16),
+                    version=2,
+                    stops=(EngagedStop(id=StopId("base-e1e1-3"), by="ben", reason="", age=0),),
+                    is_dealt_with=True,
                 ),
             ),
         ),
@@ -84,8 +104,12 @@ MESSAGES: Mapping[str, tuple[Message, ...]] = {
                 SourceFault(signal="disk", source="os disk /", reason="No such file"),
                 ErrorReport(part=PartName("left/arm"), error="JAMMED", active=True),
                 CheckpointReport(node=PartName("left/arm"), checkpoint="cycle"),
+                ReactionReport(
+                    part=PartName("left/arm"), reaction="LIMP", state=ReactionState.ACTING
+                ),
             ),
             complete=True,
+            session=Session("c3" * 16),
         ),
         Report(
             sender=ComputerName("arm"),
@@ -93,6 +117,7 @@ MESSAGES: Mapping[str, tuple[Message, ...]] = {
             seq=8,
             items=(),
             complete=False,
+            session=None,
         ),
     ),
     "node_order": (
@@ -104,6 +129,7 @@ MESSAGES: Mapping[str, tuple[Message, ...]] = {
             command=AskTransition(
                 request=41, node=PartName("left/arm"), transition=Transition.ACTIVATE
             ),
+            heard_seq=40,
         ),
         NodeOrder(
             sender=SUPERVISOR,
@@ -111,6 +137,7 @@ MESSAGES: Mapping[str, tuple[Message, ...]] = {
             seq=10,
             session=Session("c3" * 16),
             command=AskFacts(request=42, node=PartName("left/arm")),
+            heard_seq=0,
         ),
     ),
 }

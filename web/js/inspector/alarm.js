@@ -156,7 +156,7 @@ class Alarm extends HTMLElement {
     shown.forEach((each, index) => this.list.children[index].firstChild.show({ error: each, below: [], view }));
   }
 
-  #showButtons(error, { enabled, volatile }) {
+  #showButtons(error, { enabled, volatile, state }) {
     const { part, since_at: since, shelved_until_at: until } = error;
     const needsHold = mayGoOn(error);
     setAttribute(this.held, "hidden", !(isWaiting(error) && needsHold));
@@ -166,7 +166,8 @@ class Alarm extends HTMLElement {
     setAttribute(this.shelve, "hidden", until !== null || (!isOn(error) && !error.chattering));
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
-    setAttribute(this.link, "hidden", part === null);
+    // Only parts can be selected: the error may be that of a device.
+    setAttribute(this.link, "hidden", !(part in state.parts));
     if (part !== null) setText(this.link, `Show ${part.length > LONG ? "the part" : part}`);
     setAttribute(this.moment, "hidden", !since);
     if (until !== null) this.form?.close();

@@ -2,13 +2,14 @@
 
 from dataclasses import replace
 
-from domain.commands import ActAlone, AnswerOrder, AskFacts, AskTransition
+from domain.commands import ActAlone, AnswerOrder, AskFacts, AskTransition, TellReaction
 from domain.computers import SUPERVISOR, ComputerName, DeviceState, Incarnation
-from domain.inputs import NodeAnswer, NodeReport, SupervisorStatus
+from domain.inputs import NodeAnswer, NodeReport, ReactionReport, SupervisorStatus
 from domain.lifecycle import LifecycleState, Transition
 from domain.link.device_link import DeviceLink
 from domain.link.drops import Drop
 from domain.link.messages import Beat, NodeOrder, Report
+from domain.reaction_terms import ReactionState
 from domain.timebase import seconds
 from tests.support.linked_pair import (
     ARM,
@@ -281,6 +282,23 @@ def test_it_tells_of_its_own_parts_only_and_no_answers_of_nodes() -> None:
     robot.run(0.001)
 
     assert not any(isinstance(message, Report) for _, _, message in robot.sent[before:])
+
+
+def test_it_tells_at_once_how_a_reaction_stands_and_again_after_a_cut() -> None:
+    robot = connected()
+    acting, idle = ReactionState.ACTING, ReactionState.IDLE
+    robot.tell(robot.base, TellReaction(DRIVE, "COOL", acting))
+    robot.run(0.01)
+    robot.cut(BASE, SUPERVISOR)
+    robot.run(2)
+    robot.tell(robot.base, TellReaction(DRIVE, "COOL", idle))
+    robot.mend(BASE, SUPERVISOR)
+    robot.run(1)
+
+    assert [given for _, given in robot.supervisor.inputs if isinstance(given, ReactionReport)] == [
+        ReactionReport(DRIVE, "COOL", acting),
+        ReactionReport(DRIVE, "COOL", idle),
+    ]
 
 
 def test_it_tells_nobody_who_does_not_hear_it() -> None:

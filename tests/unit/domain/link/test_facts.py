@@ -4,6 +4,7 @@ from domain.inputs import (
     CheckpointReport,
     ErrorReport,
     NodeReport,
+    ReactionReport,
     Reading,
     Readings,
     SourceFault,
@@ -11,6 +12,7 @@ from domain.inputs import (
 from domain.lifecycle import LifecycleState
 from domain.link.facts import Facts, difference, merged
 from domain.link.messages import Told
+from domain.reaction_terms import ReactionState
 from domain.state_and_mode import ModeName
 from domain.timebase import seconds
 from tests.support.linked_pair import DRIVE
@@ -24,6 +26,18 @@ def known(*told: Told) -> list[Told]:
     for number, each in enumerate(told):
         facts.note(each, seconds(number))
     return list(facts.all())
+
+
+def test_a_reaction_stands_as_it_was_told_last() -> None:
+    acting = ReactionReport(DRIVE, "COOL", ReactionState.ACTING)
+    idle = ReactionReport(DRIVE, "COOL", ReactionState.IDLE)
+    facts = Facts()
+    for told in (idle, acting):
+        facts.note(told, 0)
+
+    assert list(facts.all()) == [acting]
+    assert acting in facts
+    assert idle not in facts
 
 
 def test_reports_of_a_node_add_up() -> None:

@@ -7,6 +7,7 @@ from domain.inputs import (
     ErrorReport,
     NodeAnswer,
     NodeReport,
+    ReactionReport,
     Reading,
     Readings,
     SourceFault,
@@ -14,6 +15,7 @@ from domain.inputs import (
 from domain.link.messages import Told
 from domain.link.ownership import Ownership, with_ages, with_stamps
 from domain.link.settings import Owned
+from domain.reaction_terms import ReactionState
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from tests.support.linked_pair import DRIVE, GRIPPER
@@ -29,6 +31,7 @@ OWN = Ownership(Owned((DRIVE,), ("load",), (UNDERCARRIAGE,)))
         NodeAnswer(1, DRIVE, True),
         CheckpointReport(DRIVE, "done"),
         ErrorReport(UNDERCARRIAGE, "JAMMED", active=True),
+        ReactionReport(UNDERCARRIAGE, "COOL", ReactionState.ACTING),
         Readings((Reading("load", 1.0),), "can"),
         SourceFault("load", "can", "no bus"),
     ],
@@ -44,6 +47,7 @@ def test_it_may_tell_of_its_own_parts_and_signals(told: Told) -> None:
         NodeAnswer(1, GRIPPER, True),
         CheckpointReport(GRIPPER, "done"),
         ErrorReport(GRIPPER, "JAMMED", active=True),
+        ReactionReport(GRIPPER, "COOL", ReactionState.ACTING),
         ErrorReport(None, "BATTERY_LOW", active=True),
         Readings((Reading("estop", False),), "can"),
         SourceFault("estop", "can", "no bus"),
