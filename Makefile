@@ -127,13 +127,18 @@ lowest: $(INSTALLED_DEV) ## the tests, with the oldest dependencies that pyproje
 	  --requirement $(LOWEST)/requirements.txt --editable .
 	@$(LOWEST)/bin/pytest -rs -p no:cacheprovider $(or $(ARGS),$(PARALLEL))
 
-lock: $(INSTALLED_DEV) ## update requirements.lock
+lock: $(INSTALLED_DEV) ## update requirements.lock and requirements-link.lock
 	@$(PIP_INSTALL) uv
 	@{ echo "# For installs that are the same everywhere, as in the image; made by \`make lock\`."; \
 	   echo "# Use: pip install --require-hashes -r requirements.lock && pip install --no-deps ."; \
 	   $(BIN)/uv pip compile --quiet --universal --upgrade --generate-hashes --no-annotate \
 	     --no-header --no-emit-index-url --no-emit-find-links pyproject.toml; } > requirements.lock.new
 	@mv requirements.lock.new requirements.lock
+	@{ echo "# What links several computers, for the image built with --build-arg LINK=1; made by \`make lock\`."; \
+	   sed -n 's/^link = \["\(.*\)"\]$$/\1/p' pyproject.toml | \
+	   $(BIN)/uv pip compile --quiet --universal --upgrade --generate-hashes --no-annotate \
+	     --no-header --no-emit-index-url --no-emit-find-links -; } > requirements-link.lock.new
+	@mv requirements-link.lock.new requirements-link.lock
 
 clean: ## remove the environment, caches and builds
 	rm -rf $(VENV) build dist mutants *.egg-info .coverage .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache

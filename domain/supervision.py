@@ -332,7 +332,8 @@ class Supervision:
 
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
         """Return a mode of a part, with its blockers."""
-        return self._changing.mode(part, mode)
+        view = self._changing.mode(part, mode)
+        return view if self._lead is None else self._lead.restricted(part, view)
 
     def why(self, part: PartName) -> tuple[Blocker, ...]:
         """Return why a part is not where it should be, the reasons nearest to it first."""
@@ -344,7 +345,8 @@ class Supervision:
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
         """Return the transitions that would be accepted now and change something."""
-        return self._changing.available_transitions(part)
+        available = self._changing.available_transitions(part)
+        return available if self._lead is None else self._lead.available(available)
 
     def plan(self, request: ChangeRequest) -> PlanView:
         """Return what a request would do now, without starting it.

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from domain.actor import Actor
 from domain.errors import PilothouseError
-from domain.inputs import Input, Readings, TimePassed
+from domain.inputs import Input, Readings, Restored, TimePassed
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.timebase import Instant
@@ -60,6 +60,15 @@ class Submitter:
         """
         now = self._clock.now()
         return self._pass(given, now, is_late=self._catch_up.is_on(now))
+
+    def begin(self, left: Restored) -> None:
+        """Submit what an earlier run left, before anything that fell due since the core was made.
+
+        A large robot takes seconds to make: the ids of events go on from what was left, and so none
+        may come before it.
+        """
+        due, now = self._onboard.wake_at(), self._clock.now()
+        self._pass(left, now, is_late=due is not None and due <= now)
 
     def _pass(self, given: Input, now: Instant, *, is_late: bool) -> Outputs:
         handle = self._onboard.take_in if is_late else self._onboard.handle

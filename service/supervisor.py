@@ -110,7 +110,7 @@ class Supervisor:
         """Bring back what an earlier run left; return who keeps it from now on."""
         if stores.journal is None:
             return None
-        self.submit(stores.journal.found.restored)
+        self._submitter.begin(stores.journal.found.restored)
         version = stores.journal.boot.version
         checkpoint = Checkpoint(
             partial(checkpoint_of, self._onboard, version), len(self.model.parts) > _LARGE
@@ -175,7 +175,7 @@ class Supervisor:
         """Let the link know which stops are engaged here before it says that there is none."""
         if self.journal is None:
             # Nothing was restored: the core does not know yet how this run is named.
-            self.submit(Restored(run=self.epoch))
+            self.submit(Restored(run=self.epoch, next_event=self.core.next_event))
         link.send(self.core.stops_to_tell())
 
     def submit(self, given: Input) -> Outputs:

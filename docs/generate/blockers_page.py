@@ -7,7 +7,7 @@ from docs.generate.source_scan import codes_given_to, codes_in, require_describe
 from domain.changes.admission import ADVISORY
 from domain.changes.guards import INVARIANT
 from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
-from domain.errors import BackendUnavailableError
+from domain.errors import BackendUnavailableError, OfflineError, OwnedBySupervisorError
 from domain.health.built_in_errors import ALL_OF_NODES, OF_DEVICES
 from domain.health.part_errors import DEVIATES_AFTER
 from domain.health.signals import (
@@ -31,6 +31,9 @@ from domain.timebase import to_seconds
 _OF_CHANGES = {
     ESTOP: "A node would be activated while ESTOP is active.",
     BackendUnavailableError.code: "The whole backend is down; the request is answered with 503.",
+    OwnedBySupervisorError.code: "Asked at a device: its supervisor is connected, and commands the "
+    "part.",
+    OfflineError.code: "Asked at a device: it does not hear its supervisor, who commands the part.",
     "FINALIZED": "A node is finalized: its process must be restarted.",
     "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
     "UNREACHABLE": "A node is unreachable.",

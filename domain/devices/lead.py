@@ -3,6 +3,8 @@
 The link has judged before whether an order is of the supervisor's present session.
 """
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import NamedTuple
 
 from domain.actor import Actor
@@ -32,6 +34,7 @@ from domain.events.lead import (
     SupervisorLate,
     SupervisorLost,
 )
+from domain.findings import Blocker
 from domain.health.health import Health
 from domain.inputs import (
     ChangeRequest,
@@ -48,6 +51,7 @@ from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.reaction_terms import ReactionState
 from domain.reactions.reactions import Reactions
+from domain.snapshot import ModeView
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
 
@@ -255,15 +259,26 @@ class Lead(Concern):
         """
         if isinstance(request, TransitionRequest) and request.transition is Transition.DEACTIVATE:
             return
-        self._reject(part_of(request))
+        raise self._rejection(part_of(request))
+
+    def restricted(self, part: PartName, view: ModeView) -> ModeView:
+        """Return a mode as it can be requested at the device: it cannot be entered from here."""
+        error = self._rejection(part)
+        blocker = Blocker(error.code, error.message, (part,), since=self._since)
+        return replace(view, can_enter=False, blockers=(blocker, *view.blockers))
+
+    @staticmethod
+    def available(transitions: Iterable[Transition]) -> tuple[Transition, ...]:
+        """Return those transitions that can be requested at the device."""
+        return tuple(each for each in transitions if each is Transition.DEACTIVATE)
 
     def _check_task(self, request: TaskRequest, now: Instant) -> None:
-        self._reject("the vehicle")
+        raise self._rejection("the vehicle")
 
-    def _reject(self, what: str) -> None:
+    def _rejection(self, what: str) -> RefusedError:
         if self._word is Word.SUPERVISOR:
-            raise OwnedBySupervisorError(what, self._settings.supervisor_at)
-        raise OfflineError(what, self._settings.device, self._supervisor.reason)
+            return OwnedBySupervisorError(what, self._settings.supervisor_at)
+        return OfflineError(what, self._settings.device, self._supervisor.reason)
 
     # --- alone -----------------------------------------------------------------------------------
 

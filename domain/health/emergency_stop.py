@@ -137,7 +137,7 @@ class EmergencyStop(Concern):
     def take_stops_of_peer(self, told: PeerStops, now: Instant) -> None:
         """Take which stops another computer has; what is new stops before what is gone releases.
 
-        Whoever is not dealt with may well stop the robot, but release only what it engaged itself.
+        Whoever is not dealt with can stop the robot, but ends no stop except its own.
         """
         computer, before = told.computer, tuple(self._stops.of(told.computer))
         if told.ended is None:
@@ -151,7 +151,7 @@ class EmergencyStop(Concern):
                 self._stops.add(computer, replace(stop, since=min(stop.since, now)))
                 self._renew(now)
         for identity in before:
-            if identity not in after if told.ended is None else identity in told.ended:
+            if identity not in after and (told.ended is None or identity in told.ended):
                 self._take_end(computer, identity, now)
         if before != tuple(self._stops.of(computer)):
             self._keep_of_peer(computer)

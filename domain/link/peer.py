@@ -349,9 +349,7 @@ class Peer:
             beat.incarnation, beat.stops_version, beat.stops, now, lives=lives, is_dealt_with=True
         )
         if self.lease.is_held:
-            # What was on its way when its process ended is heard a little later.
-            until = self._began_at + self._settings.lost
-            self.stops.replace_those_before(beat.incarnation, until, now)
+            self._end_those_before()
         self._drop_done_releases(beat.incarnation)
         if lives:
             self._refuse_who_lives(beat.heard_seq)
@@ -361,6 +359,17 @@ class Peer:
         """End the stops of processes that were dealt with before; this one tells its own."""
         for process in self._former:
             if process != self.incarnation:
+                self.stops.replace(process)
+
+    def _end_those_before(self) -> None:
+        """End the stops of silent processes that did not run beside the one that is dealt with.
+
+        What was on its way when its process ended is heard a little later.
+        """
+        until = self._began_at + self._settings.lost
+        for process in self.stops.processes():
+            is_silent = process != self.incarnation and process not in self._others
+            if is_silent and self.stops.heard_at(process) < until:
                 self.stops.replace(process)
 
     def _drop_done_releases(self, process: Incarnation) -> None:

@@ -136,19 +136,9 @@ class HeardStops:
         if replaced is not None:
             self._ended.extend(replaced.stops)
 
-    def replace_those_before(self, process: Incarnation, until: Instant, now: Instant) -> None:
-        """End all stops of processes that came before the one that is dealt with.
-
-        Args:
-            process: That one.
-            until: A process that was heard later than that ran beside it.
-            now: The current time; nothing is judged before `until`.
-        """
-        if len(self._by) == 1 or now < until:
-            return
-        for other, of in list(self._by.items()):
-            if other != process and of.heard_at < until:
-                self.replace(other)
+    def heard_at(self, process: Incarnation) -> Instant:
+        """Return when a process was heard last that said something."""
+        return self._by[process].heard_at
 
     def end(self, process: Incarnation, stops: Iterable[StopId]) -> None:
         """End stops of a process that nobody can ask, and that a person names."""

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from functools import partial
 from typing import Any
 
 import pytest
@@ -205,7 +206,7 @@ def test_a_stop_at_a_device_that_is_cut_off_stops_the_robot_once_it_is_back(robo
 
     robot.supervisor.ask("PUT", "/emergency_stop", {"engaged": False})
     for host in (robot.supervisor, robot.base, robot.arm):
-        until(lambda host=host: not host.ask("GET", "/emergency_stop")["engaged"])  # type: ignore[misc]
+        until(partial(_is_released, host))
 
 
 def test_a_link_that_loses_packets_is_whole_again_once_it_loses_none(robot: Robot) -> None:
@@ -221,3 +222,7 @@ def test_a_link_that_loses_packets_is_whole_again_once_it_loses_none(robot: Robo
 def _agree(robot: Robot) -> bool:
     node = "nodes/drive_base"
     return actual(robot.supervisor, node) == actual(robot.base, node)
+
+
+def _is_released(host: Host) -> bool:
+    return not host.ask("GET", "/emergency_stop")["engaged"]

@@ -114,6 +114,19 @@ class Computers(RuleBasedStateMachine):
             self.known[receiver, sender] = {stop.id for stop in stops}
             self._send(receiver)
 
+    @rule(pair=PAIRS, number=st.integers(0, 3), engaged=st.booleans())
+    def hear_an_impostor(
+        self, pair: tuple[ComputerName, ComputerName], number: int, *, engaged: bool
+    ) -> None:
+        """Hear on the second a stop of somebody who says that it is the first, or its end."""
+        sender, receiver = pair
+        stop = PeerStop(StopId(f"impostor-{number}"), "mallory", "", 0)
+        stops, ended = ((stop,), ()) if engaged else ((), (stop.id,))
+        self.robots[receiver].hear(sender, self._later(), *stops, ended=ended)
+        known = self.known[receiver, sender]
+        (known.add if engaged else known.discard)(stop.id)
+        self._send(receiver)
+
     @rule(pair=PAIRS, twice=st.booleans(), lost=st.booleans())
     def hear_release(
         self, pair: tuple[ComputerName, ComputerName], *, twice: bool, lost: bool

@@ -70,12 +70,10 @@ class Robot:
         computer: ComputerName,
         now: int,
         *stops: PeerStop,
-        is_all: bool = True,
-        ended: tuple[str, ...] = (),
+        ended: tuple[StopId, ...] | None = None,
     ) -> list[str]:
-        """Hear which stops another computer has."""
-        gone = None if is_all else tuple(map(StopId, ended))
-        self.stop.take_stops_of_peer(PeerStops(computer, stops, gone), now)
+        """Hear which stops another computer has, and which of them ended; None: all others."""
+        self.stop.take_stops_of_peer(PeerStops(computer, stops, ended), now)
         return self._told()
 
     def hear_release(self, computer: ComputerName, now: int, *stops: str) -> list[str]:

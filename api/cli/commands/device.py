@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from api.cli.commands.command import Command
-from api.cli.commands.serve import add_service_options, serve_options
+from api.cli.commands.service_options import add_service_options, serve_options
 
 _TEXT = """\
 Run the service of one device of a robot of several computers, until Ctrl-C,

@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.errors import UnknownPartError
-from domain.inputs import ModeRequest, NodeReport, Reading, Readings
+from domain.inputs import ModeRequest, NodeReport, Reading, Readings, Restored
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.catch_up import CatchUp
@@ -95,3 +95,22 @@ async def test_what_time_makes_due_happens_at_its_time() -> None:
     assert "ESTOP" not in given.onboard.core.system_state().errors
     run.cancel()
     await asyncio.wait([run])
+
+
+def test_what_an_earlier_run_left_comes_before_what_fell_due_while_the_service_was_made() -> None:
+    given = Given()
+    # The readings of all signals go stale meanwhile, as those of a large robot on a slow computer.
+    given.clock.stall(10.0)
+    given.submitter.begin(Restored(next_event=500))
+    given.submitter.let_pass()
+
+    first, *_ = (event.id for step in given.carried_out for event in step.outputs.events)
+    assert first == 500
+    assert [step.is_late for step in given.carried_out] == [True, False]
+
+
+def test_where_nothing_fell_due_what_an_earlier_run_left_is_not_late() -> None:
+    given = Given()
+    given.submitter.begin(Restored(next_event=500))
+
+    assert [step.is_late for step in given.carried_out] == [False]

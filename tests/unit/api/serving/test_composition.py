@@ -7,7 +7,10 @@ import pytest
 from api.serving.composition import Composition, ServeOptions, compose, read_files
 from api.serving.misuse import MisuseError
 from domain.errors import InvalidModelError
-from service.files.robot_file import RobotSettings
+from domain.state_and_mode import PartName
+from service.files.robot_file import RobotSettings, read_robot_file
+from service.link.supervisor_end import SupervisorEnd
+from service.onboard_parts import make_onboard
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
 from service.start_task import StartTaskError
 from tests.support.manual_clock import ManualClock
@@ -256,3 +259,69 @@ def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
     composed(ServeOptions(robot=robot))
 
     assert "`ros2` of the robot file has no effect" in caplog.text
+
+
+DEVICES = """\
+name: lawn
+devices:
+  arm: {parts: [manipulator], offline: {after_s: 2, target: {manipulator: inactive}}}
+"""
+
+
+@pytest.fixture
+def _zenoh() -> None:
+    pytest.importorskip("zenoh")
+
+
+@pytest.mark.usefixtures("_zenoh")
+def test_a_device_runs_its_own_part_and_has_no_vehicle(robot: Path) -> None:
+    robot.write_text(DEVICES)
+    files = read_files(ServeOptions(robot=robot, device="arm"))
+    composition = compose(ServeOptions(robot=robot, device="arm"), ManualClock(), files)
+
+    assert files.name == "lawn-arm"
+    assert composition.supervisor.model.parts == ("manipulator",)
+    assert composition.supervisor.simulated == ("nodes",)
+    assert composition.simulated is None
+    assert composition.place is not None
+    assert composition.place.name == "arm"
+
+
+@pytest.mark.usefixtures("_zenoh")
+def test_the_log_of_a_device_can_be_replayed_since_it_says_which_device_it_is(robot: Path) -> None:
+    robot.write_text(DEVICES)
+    files = read_files(ServeOptions(robot=robot, device="arm"))
+
+    again = read_robot_file(files.text, files.loaded.model)
+    onboard = make_onboard(files.loaded.model, again, 0)
+    assert onboard.core.model.parts == ("manipulator",)
+    assert onboard.core.lead() is not None
+
+
+@pytest.mark.usefixtures("_zenoh")
+def test_the_supervisor_runs_the_whole_robot_and_simulates_what_no_device_owns(
+    robot: Path,
+) -> None:
+    robot.write_text(DEVICES)
+    files = read_files(ServeOptions(robot=robot))
+    composition = compose(ServeOptions(robot=robot), ManualClock(), files)
+
+    assert "manipulator" in composition.supervisor.model.parts
+    assert tuple(files.share.local_model.nodes) == ("drive_base",)
+    assert isinstance(composition.supervisor.link, SupervisorEnd)
+    assert composition.supervisor.core.part(PartName("manipulator")).device == "arm"
+    assert composition.supervisor.core.part(PartName("drive_base")).device is None
+
+
+def test_a_device_that_the_robot_file_does_not_have_is_refused(robot: Path) -> None:
+    robot.write_text(DEVICES)
+
+    with pytest.raises(MisuseError, match="leg"):
+        read_files(ServeOptions(robot=robot, device="leg"))
+
+
+def test_a_robot_of_one_computer_has_no_link(robot: Path) -> None:
+    composition = composed(ServeOptions())
+
+    assert composition.supervisor.link is None
+    assert composition.place is None

@@ -26,10 +26,12 @@ from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, SystemState
 from domain.state_and_mode import StateAndMode
+from domain.timebase import seconds
+from service.checkpoint import checkpoint_of, core_of_checkpoint
 from service.files.model_file import read_model
 from tests.support.core_robot import CoreRobot
 from tests.support.device_robot import SECOND, DeviceRobot, offline
-from tests.support.models import BASE, actuation_model
+from tests.support.models import BASE, SLOW, actuation_model
 from tests.support.paths import straight
 
 AT_REST = offline(drive_base="inactive")
@@ -220,6 +222,20 @@ def test_before_it_was_connected_nobody_can_be_asked() -> None:
 def test_what_a_request_would_do_is_refused_alike() -> None:
     with pytest.raises(OwnedBySupervisorError):
         following().core.plan(ModeRequest(BASE, "SLOW"))
+
+
+def test_at_the_device_no_mode_can_be_entered_and_only_rest_is_offered() -> None:
+    robot = following()
+    robot.activate()
+
+    view = robot.core.mode(BASE, SLOW)
+
+    assert not view.can_enter
+    assert view.blockers[0].code == "OWNED_BY_SUPERVISOR"
+    assert robot.core.available_transitions(BASE) == (Transition.DEACTIVATE,)
+
+    robot.lose()
+    assert robot.core.mode(BASE, SLOW).blockers[0].code == "OFFLINE"
 
 
 def test_the_vehicle_is_the_supervisors() -> None:
@@ -708,3 +724,19 @@ def test_what_can_be_seen_says_whose_word_counts() -> None:
 
 def test_the_only_computer_of_a_robot_follows_nobody() -> None:
     assert CoreRobot(actuation_model()).core.lead() is None
+
+
+def test_a_copy_of_a_device_goes_on_as_the_device_does() -> None:
+    robot = reacting(offline(drive_base="inactive", reactions=True))
+    robot.order("drive_base", {"max_speed": 0.2})
+    robot.lose()
+    robot.advance(0.2)
+
+    copy = core_of_checkpoint(checkpoint_of(robot.onboard, "1.2"), "1.2")
+
+    for after_s in (0.1, 0.5, 1.0):
+        at = robot.now + seconds(after_s)
+        given = ErrorReport(BASE, "HOT", active=after_s > 0.5)
+        assert copy.handle(given, at) == robot.onboard.handle(given, at)
+        assert copy.wake_at() == robot.onboard.wake_at()
+    assert copy.core.lead() == robot.core.lead()

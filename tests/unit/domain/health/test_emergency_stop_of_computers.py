@@ -51,22 +51,24 @@ def test_a_new_stop_of_a_computer_stops_before_its_last_one_ends() -> None:
     assert [stop.id for stop in robot.stop.view().stops] == ["arm-2"]
 
 
-def test_whoever_is_not_dealt_with_stops_the_robot_and_does_not_release_it() -> None:
+def test_whoever_is_not_dealt_with_stops_the_robot_and_releases_only_its_own_stop() -> None:
     robot = Robot(peers=(ARM,))
-    robot.hear(ARM, 7, stop_of_arm(1), is_all=False)
-    assert robot.hear(ARM, 8, is_all=False) == []
-    assert robot.hear(ARM, 9, stop_of_arm(2), is_all=False) == ["emergency_stop.peer_engaged"]
-
+    robot.restore(KeptPeerStops(ARM, (stop_of_arm(1),)))
+    assert robot.hear(ARM, 8, ended=()) == []
+    assert robot.hear(ARM, 9, stop_of_arm(2), ended=()) == ["emergency_stop.peer_engaged"]
     assert [stop.id for stop in robot.stop.view().stops] == ["arm-1", "arm-2"]
     assert robot.stop.view().not_heard == (ARM,)
-    assert robot.hear(ARM, 10, stop_of_arm(2)) == ["emergency_stop.peer_released"]
+
+    assert robot.hear(ARM, 10, ended=(StopId("arm-2"),)) == ["emergency_stop.peer_released"]
+    assert [stop.id for stop in robot.stop.view().stops] == ["arm-1"]
+    assert robot.hear(ARM, 11)[0] == "emergency_stop.peer_released", "the arm itself has no stop"
 
 
 def test_whoever_is_not_dealt_with_releases_what_it_engaged_itself() -> None:
     robot = Robot(peers=(ARM,))
-    robot.hear(ARM, 7, stop_of_arm(1), stop_of_arm(2), is_all=False)
+    robot.hear(ARM, 7, stop_of_arm(1), stop_of_arm(2), ended=())
 
-    assert robot.hear(ARM, 8, stop_of_arm(2), is_all=False, ended=("arm-1",)) == [
+    assert robot.hear(ARM, 8, stop_of_arm(2), ended=(stop_of_arm(1).id,)) == [
         "emergency_stop.peer_released"
     ]
     assert [stop.id for stop in robot.stop.view().stops] == ["arm-2"]

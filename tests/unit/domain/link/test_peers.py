@@ -213,6 +213,19 @@ def test_a_stop_of_a_process_that_crashed_at_once_ends_with_the_next_one() -> No
     assert robot.devices[ARM].stops_of(BASE) == set()
 
 
+def test_a_newcomer_that_lives_keeps_its_stop_however_soon_it_came() -> None:
+    robot = LinkedRobot((BASE, ARM))
+    robot.run(0.15)
+    newcomer = robot.start(BASE)
+    robot.engage(newcomer, "n1")
+    robot.run(10)
+
+    assert robot.supervisor.stops_of(BASE) == {"n1"}
+    robot.kill(newcomer)
+    robot.run(10)
+    assert robot.supervisor.stops_of(BASE) == {"n1"}
+
+
 def test_a_process_that_nobody_hears_any_more_and_that_was_refused_is_released_by_name() -> None:
     robot = connected()
     newcomer = robot.start(BASE)
