@@ -57,6 +57,12 @@ class HoldUp(NamedTuple):
     by_s: float
 
 
+class LoseBeats(NamedTuple):
+    """Of what goes a way, beats alone do not arrive."""
+
+    way: Way
+
+
 class Double(NamedTuple):
     """Each message arrives twice, or no longer."""
 
@@ -82,7 +88,7 @@ class Press(NamedTuple):
     name: ComputerName
 
 
-Step: TypeAlias = Cut | Mend | Delay | HoldUp | Double | Restart | ChangeOfState | Press
+Step: TypeAlias = Cut | Mend | Delay | HoldUp | LoseBeats | Double | Restart | ChangeOfState | Press
 Story: TypeAlias = list[tuple[float, Step]]
 
 WAYS = st.sampled_from([Way(SUPERVISOR, BASE), Way(BASE, SUPERVISOR)])
@@ -91,6 +97,7 @@ STEPS: st.SearchStrategy[Step] = st.one_of(
     st.builds(Mend, WAYS),
     st.builds(Delay, WAYS, st.sampled_from([0.0, 0.02, 0.2])),
     st.builds(HoldUp, WAYS, st.sampled_from([0.0, 1.0, 2.5, 6.0])),
+    st.builds(LoseBeats, WAYS),
     st.builds(Double, WAYS),
     st.builds(Restart, NAMES, st.sampled_from([0.0, 2.0])),
     st.builds(ChangeOfState, st.sampled_from(STATES)),
@@ -127,10 +134,13 @@ class Life:
                 robot.way(*way).is_cut, robot.way(*way).keeps = True, keeps
             case Mend(way):
                 robot.mend_one(*way)
+                robot.way(*way).loses_beats = False
             case Delay(way, delay_s):
                 robot.way(*way).delay = seconds(delay_s)
             case HoldUp(way, by_s):
                 robot.way(*way).order_delay = seconds(by_s)
+            case LoseBeats(way):
+                robot.way(*way).loses_beats = True
             case Double(way):
                 robot.way(*way).doubles = not robot.way(*way).doubles
             case Restart(name, down_s):
@@ -156,6 +166,7 @@ class Life:
             self.robot.mend_one(*way)
             self.robot.way(*way).delay = seconds(0.001)
             self.robot.way(*way).order_delay = 0
+            self.robot.way(*way).loses_beats = False
             self.robot.way(*way).doubles = False
         self.robot.run(5)
 
