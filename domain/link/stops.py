@@ -118,7 +118,8 @@ class HeardStops:
         if version <= known.version:
             return
         said = tuple(stops)[:MAX_STOPS]
-        taken = said if lives else tuple(stop for stop in said if stop.id not in self._ended)
+        old = () if lives or is_dealt_with else self._ended
+        taken = tuple(stop for stop in said if stop.id not in old)
         if not is_dealt_with and process not in self._by and not self._has_room_for(taken):
             return
         self._by[process] = known

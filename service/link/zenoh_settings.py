@@ -84,6 +84,12 @@ def configuration(
     return made
 
 
+def at_any_port(endpoint: str) -> str:
+    """Return an endpoint of the same address at a port that is free."""
+    address, separator, rest = _with_datagrams(endpoint).partition("?")
+    return f"{address.rpartition(':')[0]}:0{separator}{rest}"
+
+
 def access_control(name: ComputerName, others: Iterable[ComputerName]) -> dict[str, object]:
     """Return what other computers may do, each known by the name of its certificate.
 

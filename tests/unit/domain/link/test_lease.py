@@ -132,3 +132,9 @@ def test_who_is_silent_says_since_when() -> None:
     assert told.lease.is_silent(seconds(1.6))
     assert told.lease.why_lost(seconds(2.2)) == "has not been heard for 2.1 s"
     assert told.lease.why_late(seconds(1)) == "has not been heard for 0.9 s"
+
+
+def test_without_anything_heard_there_is_no_lease() -> None:
+    lease = Lease(LinkSettings())
+
+    assert not lease.take_echo(lease.note_sent(0), 0)

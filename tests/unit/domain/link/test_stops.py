@@ -135,6 +135,16 @@ def test_a_stop_of_a_replaced_process_that_arrives_late_is_no_new_one() -> None:
     assert listener.stops.version_of(B) == 0, "it was not taken in as a whole"
 
 
+def test_a_stop_that_the_store_kept_stands_also_while_its_computer_hears_nobody() -> None:
+    listener = Listener()
+    listener.hears(B, 1, "s1")
+    listener.hears(A, 1, "s1")
+    listener.stops.replace(B)
+    listener.hears(A, 2, "s1", "s2", lives=False)
+
+    assert listener.stops.ids == {"s1", "s2"}
+
+
 def test_a_replaced_process_that_lives_still_stops_the_robot() -> None:
     listener = Listener()
     listener.hears(B, 1, "s1")

@@ -10,6 +10,7 @@ from service.link.zenoh_settings import (
     BEAT,
     MESSAGE,
     access_control,
+    at_any_port,
     check_endpoints,
     configuration,
     key,
@@ -55,6 +56,18 @@ def test_a_connection_is_tried_again_at_least_five_times_a_second() -> None:
 def test_quic_sends_datagrams_unless_the_endpoint_says_otherwise(given: str, made: str) -> None:
     assert configured(given, given, FILES)["listen"]["endpoints"] == [made]
     assert configured(given, given, FILES)["connect"]["endpoints"] == [made]
+
+
+@pytest.mark.parametrize(
+    ("endpoint", "elsewhere"),
+    [
+        ("tcp/127.0.0.1:7470", "tcp/127.0.0.1:0"),
+        ("tls/[::1]:7470", "tls/[::1]:0"),
+        ("quic/10.0.0.1:7470", "quic/10.0.0.1:0?mixed_rel=auto"),
+    ],
+)
+def test_an_endpoint_may_be_tried_at_another_port(endpoint: str, elsewhere: str) -> None:
+    assert at_any_port(endpoint) == elsewhere
 
 
 def test_certificates_are_of_both_ends() -> None:
