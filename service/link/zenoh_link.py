@@ -96,7 +96,7 @@ class ZenohLink:
             self._sessions = (await self._open(thread, self._open_first),)
             while True:
                 await asyncio.sleep(_WATCH_S)
-                if self._endpoints.connect:
+                if self._name != SUPERVISOR and self._endpoints.connect:
                     await self._watch(thread)
         finally:
             self._sessions = ()

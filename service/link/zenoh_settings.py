@@ -21,8 +21,9 @@ _ENCRYPTED = ("quic", "tls")
 _RETRY_MS = 100
 _MAX_RETRY_MS = 200
 """Zenoh waits up to 4 s between two attempts by default, in which a robot would stay cut off."""
-_OPEN_MS = 1_000
-"""An attempt that was begun during a cut is given up; by default, it takes 10 s."""
+_OPEN_MS = 2_000
+"""An attempt that was begun during a cut is given up; by default, it takes 10 s. Time for one
+packet of the handshake that was lost to be sent again, after 1 s."""
 _LEASE_MS = 2_000
 """A connection in which nothing is heard for so long is given up, with all that waits in it, and
 made anew. Longer than `lost_s`, since the connection is not what decides about that."""
