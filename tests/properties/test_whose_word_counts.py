@@ -24,7 +24,8 @@ from tests.support.device_robot import FIRST, SECOND, DeviceRobot, offline
 from tests.support.live_robot import make_onboard
 from tests.support.models import BASE
 
-STORIES = 5_000 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 60
+SOAK = os.environ.get("PILOTHOUSE_SOAK") == "1"
+STORIES = 5_000 if SOAK else 60
 DOES = (
     offline(),
     offline(drive_base="inactive"),
@@ -108,6 +109,7 @@ def told(number: int, steps: list[tuple[str, float]]) -> WatchedRobot:
     return robot
 
 
+@pytest.mark.timeout(0 if SOAK else 300)
 @settings(max_examples=STORIES)
 @given(st.sampled_from(range(len(DOES))), STEPS)
 def test_a_node_is_commanded_only_by_whose_word_counts(
@@ -125,6 +127,7 @@ def test_a_node_is_commanded_only_by_whose_word_counts(
     assert len(robot.commands) == commands
 
 
+@pytest.mark.timeout(0 if SOAK else 300)
 @settings(max_examples=STORIES // 3)
 @given(st.sampled_from(range(len(DOES))), STEPS)
 def test_a_record_of_a_device_leads_where_it_led_then(

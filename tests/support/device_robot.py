@@ -53,6 +53,7 @@ class DeviceRobot(CoreRobot):
         signals = SignalsBlock(stale_after_s=0.0).to_domain()
         self.settings = settings or SupervisionSettings(signals, lead=lead)
         super().__init__(own, self.settings)
+        self.lose_pose()  # The vehicle is the supervisor's.
 
     def give(self, given: Input) -> Outputs:
         """Hand one input to the core, and what it asks to the nodes."""
