@@ -17,6 +17,8 @@ WHOLE_S = 5.0
 """After which everything is known everywhere."""
 LOST_AMONG_DEVICES_S = 7.5
 """After which a device gives up to hear of another one."""
+PURSUED_S = 13.0
+"""Within which a target is reached, also if a step whose command was lost must time out before."""
 TOLD_S = 0.15
 """Within which all know of an emergency stop: one beat, and the way."""
 
@@ -74,7 +76,7 @@ def a_release_ends_all_stops(world: World) -> None:
     is ended by name wherever it is known: nobody can tell on its behalf that it is over.
     """
     world.ask(SUPERVISOR, EmergencyStopRequest(False, "all clear", ADA))
-    world.wait(1.0)
+    world.wait_until(lambda: not _stopped(world), 1.0)
     view = world.supervisor.core.emergency_stop()
     assert not view.engaged, f"the supervisor is stopped: {view}"
     world.wait_until(lambda: not _stopped(world), LOST_AMONG_DEVICES_S)
@@ -82,7 +84,7 @@ def a_release_ends_all_stops(world: World) -> None:
         left = {stop.id for stop in view.stops} - world.oracles.stops.gone_for_good
         assert not left, f"{name} is stopped: {view}"
         world.ask(name, EmergencyStopRequest(False, "the other one is gone", ADA))
-    world.wait(1.0)
+    world.wait_until(lambda: not _stopped(world), 1.0)
     assert not _stopped(world), f"stopped are {_stopped(world)}"
 
 
@@ -96,11 +98,13 @@ def targets_are_pursued(world: World) -> None:
     for part, mode in ((ACTUATION, PERFORMANCE), (LIDAR, ModeName("WIDE"))):
         refusal = world.ask(SUPERVISOR, ModeRequest(part, mode, ADA))
         assert refusal is None, f"{part} was refused {mode}: {refusal}"
-    world.wait(4.0)
+    core = world.supervisor.core
+    world.wait_until(lambda: all(core.part(part).converged for part in MODEL.parts), PURSUED_S)
+    world.wait(0.25)
     for node in MODEL.nodes:
         state = world.owner(node).nodes.state_of(node)
         assert state is LifecycleState.ACTIVE, f"{node} is {state}, and was asked to be active"
-        assert world.supervisor.core.part(node).converged, f"{node} is not where its target says"
+        assert core.part(node).converged, f"{node} is not where its target says"
     assert world.owner(BASE).nodes.parameters_of(BASE)["max_speed"] == 0.9
     assert world.owner(ARM).nodes.parameters_of(ARM)["max_torque"] == 0.2
 
@@ -121,7 +125,7 @@ def a_device_that_is_cut_off_does_what_it_should(world: World) -> None:
     offline = world.story.arrangement.devices[name].offline
     before = {node: world.owner(node).nodes.state_of(node) for node in MODEL.nodes}
     _set_all_wires(world, name, Wire(is_cut=True))
-    world.wait(5.0)
+    world.wait(4.0)
     for node, was in before.items():
         wanted = offline.targets[node].state if node in offline.targets else was
         state = world.owner(node).nodes.state_of(node)

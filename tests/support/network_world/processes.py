@@ -141,8 +141,7 @@ class Process:
         self.now = now
         for message in self.at.nodes.advance(now):
             self._node_says(message)
-        due = self.link.wake_at()
-        if due is not None and due <= self.local_now:
+        if self.link.wake_at() <= self.local_now:
             self._follow(self.link.pass_time(self.local_now))
         self._work()
         due = self.core.wake_at()

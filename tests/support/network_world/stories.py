@@ -88,12 +88,15 @@ class _Teller:
 
     def __init__(self, rng: Random, arrangement: Arrangement, wire: Wire) -> None:
         self.rng = rng
+        self.arrangement = arrangement
         self.wire = wire
         self.devices = tuple(arrangement.devices)
         self.computers = (SUPERVISOR, *self.devices)
         table: Sequence[tuple[int, Callable[[float], list[Dated]]]] = (
             (6, self.request),
             (5, self.cut),
+            (3, self.request_into_a_cut),
+            (3, self.request_that_is_held_up),
             (2, self.partition),
             (3, self.weather),
             (4, self.crash),
@@ -133,6 +136,38 @@ class _Teller:
         one, other = self.rng.sample(self.computers, 2)
         ways = [(one, other), (other, one)] if self.rng.random() < 0.6 else [(one, other)]
         return self._cut(at, ways)
+
+    def request_into_a_cut(self, at: float) -> list[Dated]:
+        """Ask for something just when its command does not get through, or only afterwards."""
+        device = self.rng.choice(self.devices)
+        ways = self.rng.choice(
+            ([(SUPERVISOR, device), (device, SUPERVISOR)], [(SUPERVISOR, device)])
+        )
+        cut = replace(self.wire, is_cut=True, keeps=self.rng.random() < 0.8)
+        end = at + self.rng.choice((0.6, 1.4, 1.6, 1.9, 2.2, 3.0))
+        return [
+            *((at, WireChanges(*way, cut)) for way in ways),
+            (at + self.rng.uniform(0.0, 1.4), Ask(SUPERVISOR, self._request_of(device))),
+            *((end, WireChanges(*way, self.wire)) for way in ways),
+        ]
+
+    def request_that_is_held_up(self, at: float) -> list[Dated]:
+        """Ask for something, of which the network makes a secret until a cut is over."""
+        device = self.rng.choice(self.devices)
+        there, back = (SUPERVISOR, device), (device, SUPERVISOR)
+        slow = replace(self.wire, delay=seconds(self.rng.choice((1.0, 2.5, 4.0))))
+        cut = replace(self.wire, is_cut=True)
+        end = at + self.rng.choice((0.6, 1.6, 1.9))
+        return [
+            (at, WireChanges(*there, slow)),
+            (at, Ask(SUPERVISOR, self._request_of(device))),
+            *((at + 0.01, WireChanges(*way, cut)) for way in (there, back)),
+            *((end, WireChanges(*way, self.wire)) for way in (there, back)),
+        ]
+
+    def _request_of(self, device: ComputerName) -> Input:
+        node = self.rng.choice(self.arrangement.devices[device].nodes)
+        return ModeRequest(node, self.rng.choice(MODEL.modes_of(node)), ADA)
 
     def partition(self, at: float) -> list[Dated]:
         """Cut all wires between some computers and the others."""

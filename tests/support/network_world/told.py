@@ -18,14 +18,14 @@ def tell(story: Story) -> World:
     Raises:
         AssertionError: Something was wrong; it says when, and the shortest story that shows it.
     """
-    fault = _fault_of(story)
+    fault = fault_of(story)
     if isinstance(fault, World):
         return fault
-    short = shortest(story, lambda shorter: not isinstance(_fault_of(shorter), World))
-    raise AssertionError(f"{_fault_of(short)}\n{short}\n\nas it was told: {fault}\n{story}")
+    short = shortest(story, lambda shorter: not isinstance(fault_of(shorter), World))
+    raise AssertionError(f"{fault_of(short)}\n{short}\n\nas it was told: {fault}\n{story}")
 
 
-def _fault_of(story: Story) -> World | str:
+def fault_of(story: Story) -> World | str:
     """Return the world after a story, or what was wrong and when."""
     world = World(story)
     try:

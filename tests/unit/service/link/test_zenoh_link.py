@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 import zenoh
@@ -266,6 +267,34 @@ async def test_a_device_that_zenoh_does_not_connect_again_opens_a_new_session() 
             supervisor.send(BASE, b"%d" % number)
 
         assert await base.hear(5) == [(SUPERVISOR, b"%d" % number) for number in range(5)]
+
+
+@needs_openssl
+@pytest.mark.usefixtures("impatient")
+async def test_a_device_that_reaches_nobody_over_quic_takes_tls(folder: Path) -> None:
+    robot = Robot(folder)
+    link = robot.link(SUPERVISOR)
+    only_tls = {"endpoints": [f"tls/127.0.0.1:{robot.port}"]}
+    link._configuration = {**link._configuration, "listen": only_tls}  # noqa: SLF001
+
+    async with RunningLink(SUPERVISOR, link) as supervisor, robot.running(BASE) as base:
+        await base.reach(supervisor)
+        await supervisor.reach(base)
+
+
+@pytest.mark.usefixtures("impatient")
+async def test_a_supervisor_that_looks_for_others_keeps_its_session(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    opening = Mock(wraps=zenoh.open)
+    monkeypatch.setattr(zenoh, "open", opening)
+    at = f"tcp/127.0.0.1:{free_port()}"
+    link = ZenohLink(SUPERVISOR, [BASE], Endpoints(("tcp/127.0.0.1:0",), (at,)))
+
+    async with RunningLink(SUPERVISOR, link):
+        await asyncio.sleep(1.0)
+
+    assert opening.call_count == 1
 
 
 @pytest.mark.usefixtures("impatient")
