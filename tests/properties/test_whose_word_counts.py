@@ -119,6 +119,7 @@ def test_a_node_is_commanded_only_by_whose_word_counts(
 
     # Once the supervisor is back and nothing else happens, the device wants nothing itself.
     robot.fault("drive_base", None)
+    robot.lose()
     robot.connect()
     robot.advance(15)
     assert robot.core.part(BASE).target is None
