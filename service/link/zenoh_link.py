@@ -33,6 +33,8 @@ from service.link.zenoh_settings import (
     check_endpoints,
     configuration,
     key,
+    looking_at,
+    over_tls,
 )
 
 _AGAIN_S = 1.0
@@ -86,6 +88,7 @@ class ZenohLink:
         self._opened: list[_Session] = []
         """All that are not closed."""
         self._numbers = count()
+        self._takes_tls = False
         self._unsent = 0
 
     async def run(self, deliver: DeliverMessage) -> None:
@@ -163,12 +166,20 @@ class ZenohLink:
         return self._open_with(self._configuration)
 
     def _open_again(self) -> "_Session":
-        """Open one more session; at another port, if the one before still has that."""
+        """Open one more session; at another port, if the one before still has that.
+
+        It takes TLS in place of QUIC, and the one after it QUIC again: one connection of QUIC that
+        is not completed keeps zenoh from accepting any other for half a minute (zenoh#2719).
+        """
+        self._takes_tls = not self._takes_tls
+        configured = dict(self._configuration)
+        if self._takes_tls:
+            configured["connect"] = looking_at(map(over_tls, self._endpoints.connect))
         try:
-            return self._open_with(self._configuration)
+            return self._open_with(configured)
         except zenoh.ZError:
-            listen = {"endpoints": [*map(at_any_port, self._endpoints.listen)]}
-            return self._open_with({**self._configuration, "listen": listen})
+            configured["listen"] = {"endpoints": [*map(at_any_port, self._endpoints.listen)]}
+            return self._open_with(configured)
 
     def _open_with(self, configured: Mapping[str, object]) -> "_Session":
         opened = zenoh.open(zenoh.Config.from_json5(json.dumps(configured)))

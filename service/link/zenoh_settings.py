@@ -5,6 +5,7 @@ message only from the connection whose certificate has the name of the sender, a
 receive only what is for it.
 """
 
+import re
 from collections.abc import Iterable, Sequence
 
 from domain.computers import ComputerName
@@ -61,15 +62,8 @@ def configuration(
     }
     made: dict[str, object] = {
         "mode": "peer",
-        "listen": {"endpoints": [_with_datagrams(endpoint) for endpoint in endpoints.listen]},
-        "connect": {
-            "endpoints": [_with_datagrams(endpoint) for endpoint in endpoints.connect],
-            "retry": {
-                "period_init_ms": _RETRY_MS,
-                "period_max_ms": _MAX_RETRY_MS,
-                "period_increase_factor": 2,
-            },
-        },
+        "listen": {"endpoints": _listened_at(endpoints.listen)},
+        "connect": looking_at(map(_with_datagrams, endpoints.connect)),
         # Nobody is looked for by multicast; devices learn of each other from the supervisor.
         "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": True}},
         "open": {"return_conditions": {"connect_scouted": False, "declares": False}},
@@ -83,6 +77,22 @@ def configuration(
         link["tls"] = _tls(certificates)
         made["access_control"] = access_control(name, others)
     return made
+
+
+def looking_at(endpoints: Iterable[str]) -> dict[str, object]:
+    """Return the part `connect` of a configuration."""
+    retry = {
+        "period_init_ms": _RETRY_MS,
+        "period_max_ms": _MAX_RETRY_MS,
+        "period_increase_factor": 2,
+    }
+    return {"endpoints": list(endpoints), "retry": retry}
+
+
+def over_tls(endpoint: str) -> str:
+    """Return where a computer is found over TLS that is found over QUIC at an endpoint."""
+    protocol, _, address = endpoint.partition("/")
+    return f"tls/{re.split('[?#]', address)[0]}" if protocol == "quic" else endpoint
 
 
 def at_any_port(endpoint: str) -> str:
@@ -176,6 +186,16 @@ def _tls(files: Certificates) -> dict[str, object]:
         # Access control knows who it is, wherever it is; the address proves nothing more.
         "verify_name_on_connect": False,
     }
+
+
+def _listened_at(endpoints: Sequence[str]) -> list[str]:
+    """Return where to listen: at a port of QUIC also for TLS, if that is free."""
+    detours = [
+        f"{over_tls(endpoint)}#exit_on_failure=false"
+        for endpoint in endpoints
+        if endpoint.startswith("quic/") and not over_tls(endpoint).endswith(":0")
+    ]
+    return [*map(_with_datagrams, endpoints), *detours]
 
 
 def _with_datagrams(endpoint: str) -> str:

@@ -269,6 +269,19 @@ async def test_a_device_that_zenoh_does_not_connect_again_opens_a_new_session() 
         assert await base.hear(5) == [(SUPERVISOR, b"%d" % number) for number in range(5)]
 
 
+@needs_openssl
+@pytest.mark.usefixtures("impatient")
+async def test_a_device_that_reaches_nobody_over_quic_takes_tls(folder: Path) -> None:
+    robot = Robot(folder)
+    link = robot.link(SUPERVISOR)
+    only_tls = {"endpoints": [f"tls/127.0.0.1:{robot.port}"]}
+    link._configuration = {**link._configuration, "listen": only_tls}  # noqa: SLF001
+
+    async with RunningLink(SUPERVISOR, link) as supervisor, robot.running(BASE) as base:
+        await base.reach(supervisor)
+        await supervisor.reach(base)
+
+
 @pytest.mark.usefixtures("impatient")
 async def test_a_supervisor_that_looks_for_others_keeps_its_session(
     monkeypatch: pytest.MonkeyPatch,
