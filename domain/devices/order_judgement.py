@@ -47,7 +47,9 @@ class OrderJudgement:
         if local is not None:
             return local
         step = self._changing.step_in_flight(command.node)
-        if step is not None:
+        # What was canceled when the supervisor came back keeps nobody waiting: its node says no
+        # itself as long as it is busy, and may never end the step if it died meanwhile.
+        if step is not None and not self._changing.change(step.change).status.is_final:
             return f"{command.node} is busy on request of the device: {step.action_name}"
         return None
 

@@ -1,5 +1,7 @@
 """What must be true once all is well again, whatever happened before."""
 
+from collections.abc import Iterator
+
 from domain.computers import SUPERVISOR, ComputerName, DeviceState
 from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.lifecycle import LifecycleState
@@ -8,7 +10,6 @@ from domain.snapshot import EmergencyStopView
 from domain.state_and_mode import ModeName, PartName
 from domain.supervision import Supervision
 from tests.support.models import ACTUATION, ARM, BASE, PERFORMANCE
-from tests.support.network_world.processes import Process
 from tests.support.network_world.robots import LIDAR, MODEL
 from tests.support.network_world.stories import ADA, TROUBLE_S
 from tests.support.network_world.world import World
@@ -19,6 +20,8 @@ LOST_AMONG_DEVICES_S = 7.5
 """After which a device gives up to hear of another one."""
 PURSUED_S = 13.0
 """Within which a target is reached, also if a step whose command was lost must time out before."""
+UNDER_WAY_S = 1.0
+"""Within which a change is known everywhere."""
 TOLD_S = 0.15
 """Within which all know of an emergency stop: one beat, and the way."""
 
@@ -49,19 +52,25 @@ def everything_is_known(world: World) -> None:
         assert status is not None, f"{device.name} follows nobody"
         assert status.state is DeviceState.CONNECTED, f"{device.name} says {status}"
         assert status.incarnation == supervisor.incarnation, f"{device.name} says {status}"
+    # What is changed now is on its way.
+    world.wait_until(lambda: not list(_shown_wrongly(world)), UNDER_WAY_S)
+    wrong = list(_shown_wrongly(world))
+    assert not wrong, "; ".join(wrong)
+
+
+def _shown_wrongly(world: World) -> Iterator[str]:
+    """Yield what somebody shows of a node and is not so."""
     for node in MODEL.nodes:
-        owner = world.owner(node)
-        assert owner.process is not None
-        for process in {owner.process, supervisor}:
-            _shows_what_is(world, process, node)
-
-
-def _shows_what_is(world: World, process: Process, node: PartName) -> None:
-    nodes, view = world.owner(node).nodes, process.core.part(node)
-    where = f"{node} at {process.name}"
-    assert view.reachable, f"{where} is not reachable"
-    assert view.actual.state is nodes.state_of(node), f"{where}: {view} is {nodes.state_of(node)}"
-    assert _parameters(process.core, node) == nodes.parameters_of(node), f"parameters of {where}"
+        computer = world.owner(node)
+        for process in {world.process(computer.name), world.supervisor}:
+            nodes, view = computer.nodes, process.core.part(node)
+            where = f"{node} at {process.name}"
+            if not view.reachable:
+                yield f"{where} is not reachable"
+            if view.actual.state is not nodes.state_of(node):
+                yield f"{where} is {nodes.state_of(node)}, and not as in {view}"
+            if _parameters(process.core, node) != nodes.parameters_of(node):
+                yield f"{where} has other parameters"
 
 
 def _parameters(core: Supervision, node: PartName) -> dict[str, object]:

@@ -8,8 +8,12 @@ from domain.inputs import EmergencyStopRequest, Input
 from domain.lifecycle import Transition
 from domain.link.messages import Beat, Message
 from domain.link.outputs import Sending
-from domain.timebase import Instant
+from domain.timebase import Instant, seconds
 from tests.support.network_world.processes import Process, Step
+
+
+FRESH = seconds(1.0)
+"""What was sent within it is no echo of before a loss."""
 
 
 @dataclass
@@ -22,6 +26,8 @@ class _Seen:
     """`seq` of the newest beat that it read, by who sent it."""
     told: dict[ComputerName, tuple[Instant, frozenset[StopId]]] = field(default_factory=dict)
     """When it sent a beat to each computer last, with which stops."""
+    sent_at: dict[tuple[ComputerName, int], Instant] = field(default_factory=dict)
+    """When it sent each beat."""
     changed_at: Instant | None = None
     """When its own stops changed, until it is known that it told so."""
 
@@ -39,10 +45,14 @@ class StopOracle:
         self.gone_for_good: set[StopId] = set()
         """Those of a process after which none was started."""
         self.counts = {"stops": 0, "told": 0}
+        self._owners: dict[StopId, Process] = {}
+        """Who engaged it first."""
+        self._all_runs: list[Process] = []
         self._left: dict[str, frozenset[StopId]] = {}
 
     def began(self, process: Process) -> None:
         self._seen[process.incarnation] = _Seen()
+        self._all_runs.append(process)
 
     def ended(self, process: Process, endpoint: str) -> None:
         """Note the stops of a process that ended."""
@@ -65,7 +75,9 @@ class StopOracle:
     def sent(self, process: Process, sending: Sending) -> None:
         if isinstance(sending.message, Beat):
             stops = frozenset(stop.id for stop in sending.message.stops)
-            self._seen[process.incarnation].told[sending.to] = (process.now, stops)
+            seen = self._seen[process.incarnation]
+            seen.told[sending.to] = (process.now, stops)
+            seen.sent_at[sending.to, sending.message.seq] = process.now
 
     def read(self, process: Process, message: Message) -> None:
         """See what a process knows after it read a message."""
@@ -77,8 +89,10 @@ class StopOracle:
         seen.newest[message.incarnation] = message.seq
         told = {stop.id for stop in message.stops}
         self.counts["told"] += bool(told)
-        # The supervisor may have passed on the release before, which overtook this beat.
-        missing = told - self._all(process) - self.released
+        # Of the end of a stop it may have heard on another way, before.
+        missing = {stop for stop in told - self._all(process) if self._is_engaged(stop)}
+        if missing and not self._is_fresh(process, message):
+            missing = {stop for stop in missing if not self._is_replaced(stop)}
         assert not missing, f"{process.name} was told of {missing}, and is not stopped by it"
 
     def took(self, process: Process, step: Step) -> None:
@@ -89,7 +103,10 @@ class StopOracle:
             seen.changed_at = process.now
         seen.own, seen.all = own, every
         self.counts["stops"] += len(own - before)
+        for stop in own:
+            self._owners.setdefault(stop, process)
         ended = before - every - self.released - self.forgotten
+        ended = frozenset(stop for stop in ended if not self._is_replaced(stop))
         assert not ended, f"{ended} ended at {process.name} by {step.given}, and nobody released it"
         is_press = isinstance(step.given, EmergencyStopRequest)
         if was_stopped and every and not is_press:
@@ -98,6 +115,28 @@ class StopOracle:
                     isinstance(command, AskTransition) and command.transition is Transition.ACTIVATE
                 )
                 assert not is_activation, f"{command} by {process.name}, which is stopped"
+
+    def _is_fresh(self, process: Process, beat: Beat) -> bool:
+        """Tell whether a beat was sent just now, as its echo shows.
+
+        Otherwise it may be one of a process that was replaced, and its stops those of before.
+        """
+        sent_at = self._seen[process.incarnation].sent_at.get((beat.sender, beat.heard_seq))
+        if sent_at is None or beat.heard != process.incarnation:
+            return False
+        return process.now - sent_at < FRESH
+
+    def _is_engaged(self, stop: StopId) -> bool:
+        owner = self._owners[stop]
+        return stop in self._seen[owner.incarnation].own
+
+    def _is_replaced(self, stop: StopId) -> bool:
+        """Tell whether a younger process of the same name may have taken the place of its owner.
+
+        From elsewhere it looks as if the owner was started again without the stop.
+        """
+        owner = self._owners[stop]
+        return any(p.name == owner.name and p.started_at > owner.started_at for p in self._all_runs)
 
     def look(self) -> None:
         """Judge, at the end of an instant, whether all that changed was told at once."""

@@ -102,6 +102,7 @@ class _Teller:
             (4, self.crash),
             (2, self.sleep),
             (3, self.stop),
+            (2, self.stop_during_a_change),
             (2, self.release),
             (2, self.node_fault),
             (1, self.newcomer),
@@ -212,6 +213,22 @@ class _Teller:
         pressed = Ask(self.rng.choice(self.computers), EmergencyStopRequest(True, "smoke", ADA))
         after_s = self.rng.choice(LENGTHS_S)
         return [(at, pressed), *(self.release(at + after_s) if self.rng.random() < 0.7 else ())]
+
+    def stop_during_a_change(self, at: float) -> list[Dated]:
+        """Press a stop at a device, of which its supervisor may not know while it activates."""
+        device = self.rng.choice(self.devices)
+        way = (device, SUPERVISOR)
+        pressed_at = at + self.rng.uniform(0.0, 0.7)
+        node = self.rng.choice(self.arrangement.devices[device].nodes)
+        pressed = EmergencyStopRequest(True, "a hand", ADA)
+        cut = replace(self.wire, is_cut=self.rng.random() < 0.7)
+        return [
+            (at, Ask(SUPERVISOR, TransitionRequest(node, Transition.CLEANUP, ADA))),
+            (at + 0.7, Ask(SUPERVISOR, ModeRequest(node, MODEL.modes_of(node)[0], ADA))),
+            (at + 0.7, WireChanges(*way, cut)),
+            (pressed_at + 0.7, Ask(device, pressed)),
+            (at + 2.0, WireChanges(*way, self.wire)),
+        ]
 
     def release(self, at: float) -> list[Dated]:
         """Release all stops that are seen somewhere."""

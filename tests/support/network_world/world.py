@@ -35,6 +35,8 @@ from tests.support.network_world.robots import MODEL
 from tests.support.network_world.stories import Story, newcomer_of
 
 CLOCKS_APART_S = 300.0
+MOST_STEPS = 1_000
+"""At one instant."""
 
 
 class World:
@@ -44,6 +46,7 @@ class World:
         """Begin with nothing running."""
         self.story = story
         self.now: Instant = 0
+        self._steps_now = 0
         self.rng = Random(f"world {story.seed}")
         self.network: SimulatedNetwork[Message] = SimulatedNetwork(story.seed)
         self.oracles = Oracles(self)
@@ -107,8 +110,7 @@ class World:
         """Let all happen up to a time, each at its own."""
         end = seconds(until_s)
         while (due := self._due()) is not None and due <= end:
-            assert due >= self.now, "time went back"
-            self.now = due
+            self._note_time(due)
             self._happen()
             for arrival in self.network.arrivals(due):
                 self._deliver(arrival.sender, arrival.to, arrival.message)
@@ -116,6 +118,12 @@ class World:
                 self._let_act(computer)
             self.oracles.look()
         self.now = end
+
+    def _note_time(self, due: Instant) -> None:
+        assert due >= self.now, "time went back"
+        self._steps_now = self._steps_now + 1 if due == self.now else 0
+        assert self._steps_now < MOST_STEPS, "time stands still"
+        self.now = due
 
     def wait(self, duration_s: float) -> None:
         """Let time pass."""

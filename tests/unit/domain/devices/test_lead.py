@@ -495,6 +495,19 @@ def test_what_a_device_was_changing_alone_is_canceled() -> None:
     assert robot.actual("drive_base") == "inactive"
 
 
+def test_a_step_that_was_canceled_keeps_no_order_waiting() -> None:
+    robot = following(offline(drive_base="active.SLOW"))
+    robot.lose()
+    robot.fault("drive_base", Fault.DIE)
+    robot.advance(0.6)
+    robot.connect()
+    robot.fault("drive_base", None)
+
+    answer = robot.answer_to(robot.order("drive_base", "configure"))
+
+    assert answer.accepted
+
+
 def test_the_next_cut_counts_anew() -> None:
     robot = following()
     robot.lose()
