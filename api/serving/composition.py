@@ -240,7 +240,7 @@ def _with_simulated(
     for left in simulated.left_out:
         log.warning("left out: %s", left)
     _leave_to_others(share, simulated.mock, now)
-    what = simulated.what
+    what = tuple(each for each in simulated.what if each != "nodes" or share.local_model.nodes)
     if files.is_device:
         what = ("nodes",)
         simulated.vehicle.set_reporting(False, now)

@@ -151,7 +151,8 @@ def blockers_page() -> str:
         UndescribedError: A code of the source is not described here, or the reverse.
     """
     of_nodes = codes_in("domain/parts/node_doubts.py")
-    of_changes = of_nodes | {ESTOP, BackendUnavailableError.code}
+    at_devices = {OwnedBySupervisorError.code, OfflineError.code}
+    of_changes = of_nodes | {ESTOP, BackendUnavailableError.code, *at_devices}
     require_described("blockers", of_changes, set(_OF_CHANGES))
     of_conditions = codes_in("domain/robot_reasons.py") | {CONDITION, UNKNOWN_VALUE}
     require_described("conditions", of_conditions, set(_OF_CONDITIONS))

@@ -64,8 +64,8 @@ class DisplacementStays(Event):
     reaction: str | None = None
 
     def _words(self) -> str:
-        words = f"{self.part} stays {self.target.label} after {_setter(self.because, self.rule)}"
-        return because(words, self.reason)
+        setter = _setter(self.because, self.rule or self.reaction)
+        return because(f"{self.part} stays {self.target.label} after {setter}", self.reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,4 +86,6 @@ class RuleNotApplied(Event):
 
 def _setter(kind: Because, name: str | None) -> str:
     """Return who set a target, as in "rule slow_down"."""
+    if kind is Because.LOCAL:
+        return f"reaction {name}, on its device,"
     return "a broken invariant" if kind is Because.INVARIANT else f"{kind} {name}"

@@ -133,9 +133,8 @@ class RemoteDevice:
     # --- the connection --------------------------------------------------------------------------
 
     def _is_present(self, report: Report) -> bool:
-        """Tell whether a report was made under the session that is known, and not before a loss."""
-        session = report.session
-        return session is not None and session == self._session and session != self._lost_session
+        """Tell whether a report was made under the session that is known."""
+        return report.session is not None and report.session == self._session
 
     def _begin_anew(self) -> None:
         """Expect all facts again, under another session.

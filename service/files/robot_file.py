@@ -219,7 +219,7 @@ def _written(data: AnyMapping[str, Any]) -> str:
 
 
 def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSettings:
-    """Return settings that were sent as JSON; they must not name files.
+    """Return settings that were sent as JSON, for a simulation; they must not name files.
 
     Raises:
         InvalidValueError: A key or value is wrong; `pointer` leads to it.
@@ -248,7 +248,8 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
             raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
     for keys, _, message in _faults(settings, model):
         raise InvalidValueError(message, _pointer(*merged.place_of(keys)))
-    return settings
+    # One computer simulates all of it.
+    return settings.model_copy(update={"devices": {}, "device": None})
 
 
 def _no_node(name: str, model: SmhModel) -> str:

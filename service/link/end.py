@@ -8,7 +8,7 @@ from typing import Protocol, cast
 
 from domain.commands import LinkCommand, NodeCommand
 from domain.computers import ComputerName, Connection
-from domain.inputs import BackendStatus, Input, ReportBacklog
+from domain.inputs import Input, ReportBacklog
 from domain.link.messages import Beat, Message
 from domain.link.outputs import LinkOutputs
 from domain.timebase import Instant
@@ -71,7 +71,6 @@ class LinkEnd:
 
     async def run(self, deliver: Deliver) -> None:
         """Exchange messages with the other computers, and deliver what follows, until cancelled."""
-        deliver(BackendStatus(available=True))
         self._deliver = deliver
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self._link.run(self._hear), name="messages of the link")

@@ -3,7 +3,7 @@
 import asyncio
 
 from domain.commands import NodeCommand
-from domain.inputs import Input
+from domain.inputs import BackendStatus, Input
 from service.link.end import LinkEnd
 from service.ports import Deliver
 
@@ -13,6 +13,12 @@ class SupervisorEnd(LinkEnd):
 
     It delivers a negative `NodeAnswer` to a command for a node whose device is not connected.
     """
+
+    async def run(self, deliver: Deliver) -> None:
+        """Exchange messages with the devices, and deliver what follows, until cancelled."""
+        # A device that is not there is no failure of what reaches them all.
+        deliver(BackendStatus(available=True))
+        await super().run(deliver)
 
     def note(self, given: Input, /) -> None:
         """Do nothing: no device follows what the supervisor learnt."""

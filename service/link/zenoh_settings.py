@@ -5,6 +5,7 @@ message only from the connection whose certificate has the name of the sender, a
 receive only what is for it.
 """
 
+import re
 from collections.abc import Iterable, Sequence
 
 from domain.computers import ComputerName
@@ -21,8 +22,9 @@ _ENCRYPTED = ("quic", "tls")
 _RETRY_MS = 100
 _MAX_RETRY_MS = 200
 """Zenoh waits up to 4 s between two attempts by default, in which a robot would stay cut off."""
-_OPEN_MS = 1_000
-"""An attempt that was begun during a cut is given up; by default, it takes 10 s."""
+_OPEN_MS = 2_000
+"""An attempt that was begun during a cut is given up; by default, it takes 10 s. Time for one
+packet of the handshake that was lost to be sent again, after 1 s."""
 _LEASE_MS = 2_000
 """A connection in which nothing is heard for so long is given up, with all that waits in it, and
 made anew. Longer than `lost_s`, since the connection is not what decides about that."""
@@ -60,15 +62,8 @@ def configuration(
     }
     made: dict[str, object] = {
         "mode": "peer",
-        "listen": {"endpoints": [_with_datagrams(endpoint) for endpoint in endpoints.listen]},
-        "connect": {
-            "endpoints": [_with_datagrams(endpoint) for endpoint in endpoints.connect],
-            "retry": {
-                "period_init_ms": _RETRY_MS,
-                "period_max_ms": _MAX_RETRY_MS,
-                "period_increase_factor": 2,
-            },
-        },
+        "listen": {"endpoints": _listened_at(endpoints.listen)},
+        "connect": looking_at(map(_with_datagrams, endpoints.connect)),
         # Nobody is looked for by multicast; devices learn of each other from the supervisor.
         "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": True}},
         "open": {"return_conditions": {"connect_scouted": False, "declares": False}},
@@ -82,6 +77,28 @@ def configuration(
         link["tls"] = _tls(certificates)
         made["access_control"] = access_control(name, others)
     return made
+
+
+def looking_at(endpoints: Iterable[str]) -> dict[str, object]:
+    """Return the part `connect` of a configuration."""
+    retry = {
+        "period_init_ms": _RETRY_MS,
+        "period_max_ms": _MAX_RETRY_MS,
+        "period_increase_factor": 2,
+    }
+    return {"endpoints": list(endpoints), "retry": retry}
+
+
+def over_tls(endpoint: str) -> str:
+    """Return where a computer is found over TLS that is found over QUIC at an endpoint."""
+    protocol, _, address = endpoint.partition("/")
+    return f"tls/{re.split('[?#]', address)[0]}" if protocol == "quic" else endpoint
+
+
+def at_any_port(endpoint: str) -> str:
+    """Return an endpoint of the same address at a port that is free."""
+    address, separator, rest = _with_datagrams(endpoint).partition("?")
+    return f"{address.rpartition(':')[0]}:0{separator}{rest}"
 
 
 def access_control(name: ComputerName, others: Iterable[ComputerName]) -> dict[str, object]:
@@ -169,6 +186,16 @@ def _tls(files: Certificates) -> dict[str, object]:
         # Access control knows who it is, wherever it is; the address proves nothing more.
         "verify_name_on_connect": False,
     }
+
+
+def _listened_at(endpoints: Sequence[str]) -> list[str]:
+    """Return where to listen: at a port of QUIC also for TLS, if that is free."""
+    detours = [
+        f"{over_tls(endpoint)}#exit_on_failure=false"
+        for endpoint in endpoints
+        if endpoint.startswith("quic/") and not over_tls(endpoint).endswith(":0")
+    ]
+    return [*map(_with_datagrams, endpoints), *detours]
 
 
 def _with_datagrams(endpoint: str) -> str:

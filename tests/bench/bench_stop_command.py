@@ -16,6 +16,7 @@ from tests.support.big_model import big_model_text
 from tests.support.measured_service import PILOTHOUSE, MeasuredService, measured_service
 from tests.support.process import COMMAND
 from tests.support.shared import PROJECT
+from tests.support.ssh_session import HAS_SSH, ssh_session
 
 pytestmark = [
     pytest.mark.bench,
@@ -40,15 +41,18 @@ def test_a_stop_from_the_command_line(tmp_path: Path) -> None:
             time.sleep(SETTLE_S)
             _ask(service.host, "POST", "/tasks", TRACK.read_text(), "text/csv")
             taken = [_stop(service) for _ in range(STOPS)]
+            typed = asyncio.run(_typed_stops(service, tmp_path)) if HAS_SSH else []
         rows[f"{nodes:,} nodes: speed 0 commanded"] = quantiles([told for told, _ in taken])
         rows[f"{nodes:,} nodes: the command says so"] = quantiles([said for _, said in taken])
+        if typed:
+            rows[f"{nodes:,} nodes, over ssh: speed 0 commanded"] = quantiles(typed)
     report(
         "stop_command",
         "A stop from the command line",
         f"From the start of the process `pilothouse stop` to the first frame of the stream with a "
         f"commanded speed of 0, {STOPS} times, while the vehicle drives; and until the command "
-        "prints that the stop is engaged. The start of Python is in it; ssh is not. Everything is "
-        "stored.",
+        "prints that the stop is engaged. The start of Python is in it. Over ssh: from Enter in a "
+        "session that is open, on this machine. Everything is stored.",
         rows,
         asked="at most 700 ms until speed 0 is commanded, with a model of 10,000 nodes.",
     )
@@ -56,8 +60,12 @@ def test_a_stop_from_the_command_line(tmp_path: Path) -> None:
 
 def _stop(service: MeasuredService) -> tuple[float, float]:
     """Return the seconds from the start of the command to speed 0, and to its first line."""
-    _ask(service.host, "PUT", "/emergency_stop", json.dumps({"engaged": False}), "application/json")
+    _release(service)
     return asyncio.run(_time_stop(service))
+
+
+def _release(service: MeasuredService) -> None:
+    _ask(service.host, "PUT", "/emergency_stop", json.dumps({"engaged": False}), "application/json")
 
 
 async def _time_stop(service: MeasuredService) -> tuple[float, float]:
@@ -71,6 +79,25 @@ async def _time_stop(service: MeasuredService) -> tuple[float, float]:
         stopped, said = await asyncio.gather(_until(stream, drives=False), _first_line(command))
         assert await command.wait() == 0
         return stopped - begin, said - begin
+
+
+async def _typed_stops(service: MeasuredService, folder: Path) -> list[float]:
+    """Return the seconds from Enter in an ssh session to speed 0, of each stop."""
+    keys = folder / f"keys_{service.host.rpartition(':')[2]}"
+    keys.mkdir()
+    url = f"ws://{service.host}/ws?topics=vehicle"
+    taken = []
+    async with ssh_session(keys) as session:
+        for _ in range(STOPS):
+            await asyncio.to_thread(_release, service)
+            async with websockets.connect(url, max_size=None) as stream:
+                async with asyncio.timeout(_PATIENCE_S):
+                    await _until(stream, drives=True)
+                    begin = time.perf_counter()
+                    await session.enter([*COMMAND, "stop", "--url", service.process.url])
+                    taken.append(await _until(stream, drives=False) - begin)
+                    await session.until("stop engaged")
+    return taken
 
 
 async def _until(stream: websockets.ClientConnection, *, drives: bool) -> float:

@@ -20,11 +20,12 @@ from domain.parameters import Parameters, ParameterValue
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import SimulatedRobot
 from domain.state_and_mode import PartName
-from service.clock import MonotonicClock
+from service.clock import Clock, MonotonicClock
 from service.files.robot_file import RobotSettings
 from service.link.making import make_end
 from service.link.memory import MemoryNetwork
 from service.link.place import place_in
+from service.link.port import Link
 from service.ports import BackendMessage, NodeBackend
 from service.ros.backend.backend import Ros2Backend
 from service.simulation.simulated import SimulatedBackend
@@ -34,6 +35,7 @@ from tests.support.linked_robot import Running, make_computer, names_of, setting
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ARM, BASE, actuation_model
 from tests.support.offset_clock import OffsetClock
+from tests.support.robot_of_computers import free_port
 from tests.support.ros_graph import FakeGraph
 from tests.support.ros_nodes import FakeNode
 
@@ -161,28 +163,26 @@ class RealNodes:
             process.kill()
 
 
-class Remote:
-    """Simulated nodes on two other computers, whose clocks are wrong, in virtual time."""
+class OnDevices:
+    """Simulated nodes on two other computers, whose clocks are wrong.
 
-    def __init__(self) -> None:
-        self._clock = ManualClock()
+    Args:
+        clock: Of the supervisor.
+        link: Returns the link of a computer by its name.
+    """
+
+    def __init__(self, clock: Clock, link: Callable[[ComputerName], Link]) -> None:
         self._devices = Running()
-        network = MemoryNetwork(names_of(), self._clock)
-        model = actuation_model()
-        link = network.link(SUPERVISOR)
-        robot = settings_of(SUPERVISOR)
+        model, robot = actuation_model(), settings_of(SUPERVISOR)
         place = place_in(robot)
         assert place is not None
-        self.backend: NodeBackend = make_end(place, model, robot, link, self._clock)
+        self.backend: NodeBackend = make_end(place, model, robot, link(SUPERVISOR), clock)
         self._nodes: dict[PartName, SimulatedBackend] = {}
         for name, node, ahead_s in (("base", BASE, 300.0), ("arm", ARM, -300.0)):
-            clock = OffsetClock(self._clock, ahead_s)
-            link = network.link(ComputerName(name))
-            device, self._nodes[node] = make_computer(model, settings_of(name), link, clock)
+            own = OffsetClock(clock, ahead_s)
+            made = make_computer(model, settings_of(name), link(ComputerName(name)), own)
+            device, self._nodes[node] = made
             self._devices.start(name, device)
-
-    async def pass_time(self, by_s: float) -> None:
-        await self._clock.advance(by_s)
 
     def silence(self, node: PartName) -> None:
         self._nodes[node].set_fault(node, Fault.SILENT)
@@ -197,10 +197,42 @@ class Remote:
         await self._devices.stop()
 
 
+class Remote(OnDevices):
+    """Nodes on other computers in a network in memory, in virtual time."""
+
+    def __init__(self) -> None:
+        self._clock = ManualClock()
+        super().__init__(self._clock, MemoryNetwork(names_of(), self._clock).link)
+
+    async def pass_time(self, by_s: float) -> None:
+        await self._clock.advance(by_s)
+
+
+class OverZenoh(OnDevices):
+    """Nodes on other computers over zenoh, in real time."""
+
+    def __init__(self) -> None:
+        made = pytest.importorskip("service.link.zenoh_link", reason="there is no zenoh")
+        robot = {"connect": [f"tcp/127.0.0.1:{free_port()}"]}
+
+        def link(name: ComputerName) -> Link:
+            place = place_in(settings_of(name, link=robot))
+            assert place is not None
+            over: Link = made.ZenohLink(place.name, place.others, place.endpoints)
+            return over
+
+        super().__init__(MonotonicClock(), link)
+
+    async def pass_time(self, by_s: float) -> None:
+        await asyncio.sleep(by_s)
+
+
 UNDER_TEST: list[object] = [
     Simulated,
     InMemory,
     Remote,
+    # Each test takes some seconds.
+    pytest.param(OverZenoh, marks=pytest.mark.soak),
     pytest.param(RealNodes, marks=pytest.mark.ros2),
 ]
 

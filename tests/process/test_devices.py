@@ -186,3 +186,30 @@ async def test_a_stop_at_a_device_stops_the_robot_and_one_at_the_supervisor_the_
     supervisor.ask("/emergency_stop", method="PUT", engaged=False)
     for each in (supervisor, base, arm):
         await each.until(lambda each=each: not each.get("/emergency_stop")["engaged"])
+
+
+async def test_the_stop_of_a_device_that_is_gone_outlives_a_release_and_the_supervisor(
+    robot: RobotOfComputers, tmp_path: Path
+) -> None:
+    keeps = [("--data", str(tmp_path / name)) for name in ("supervisor", "arm")]
+    supervisor, arm = robot.supervisor(*keeps[0]), robot.device("arm", *keeps[1])
+    await supervisor.until_connected("arm")
+    arm.ask("/emergency_stop", method="PUT", engaged=True, reason="a hand in the arm")
+    await supervisor.until(lambda: supervisor.get("/emergency_stop")["engaged"])
+    arm.kill()
+    await supervisor.until(lambda: supervisor.device_states()["arm"] == "lost")
+
+    left = supervisor.ask("/emergency_stop", method="PUT", engaged=False)
+    assert ([stop["device"] for stop in left["stops"]], "arm" in left["not_heard"]) == (
+        ["arm"],
+        True,
+    )
+    supervisor.kill()
+    supervisor = robot.supervisor(*keeps[0])
+    assert supervisor.get("/emergency_stop")["stops"][0]["id"] == left["stops"][0]["id"]
+
+    robot.device("arm", *keeps[1])
+    await supervisor.until_connected("arm")
+    assert supervisor.get("/emergency_stop")["engaged"], "nobody released it since it is back"
+    supervisor.ask("/emergency_stop", method="PUT", engaged=False)
+    await supervisor.until(lambda: not supervisor.get("/emergency_stop")["engaged"])

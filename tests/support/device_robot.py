@@ -51,7 +51,9 @@ class DeviceRobot(CoreRobot):
         lead = LeadSettings(ComputerName("base"), does or OfflineSettings())
         own = sub_model(model or actuation_model(), nodes, default_signals()).model
         signals = SignalsBlock(stale_after_s=0.0).to_domain()
-        super().__init__(own, settings or SupervisionSettings(signals, lead=lead))
+        self.settings = settings or SupervisionSettings(signals, lead=lead)
+        super().__init__(own, self.settings)
+        self.lose_pose()  # The vehicle is the supervisor's.
 
     def give(self, given: Input) -> Outputs:
         """Hand one input to the core, and what it asks to the nodes."""

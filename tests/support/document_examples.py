@@ -34,6 +34,7 @@ from tests.support.document_story import CHECKPOINTS, CSV, JSON, REACTING, STORY
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.manual_clock import ManualClock
+from tests.support.robot_with_devices import ARM_COMPUTER, DEVICES, ToldLink, heard, status
 from tests.support.shared import PROJECT
 from tests.support.stored_service import stored_service
 from tests.support.websocket import WebSocketClient
@@ -53,7 +54,11 @@ _BATTERY_SLOPE = SignalSettings(
         "battery_level", WindowSettings(statistic=Statistic.SLOPE, length=seconds(30))
     ),
 )
-_SETTINGS = SupervisionSettings((*default_signals(), _BATTERY_SLOPE), checkpoints=CHECKPOINTS)
+_SETTINGS = SupervisionSettings(
+    (*default_signals(), _BATTERY_SLOPE),
+    checkpoints=CHECKPOINTS,
+    devices={ARM_COMPUTER: DEVICES[ARM_COMPUTER]},
+)
 _EXCERPT_LINES = 4
 _METRICS = ("pilothouse_system_state", "pilothouse_task")
 _PARSED = (JSON, MEDIA_TYPE)
@@ -62,7 +67,9 @@ _PARSED = (JSON, MEDIA_TYPE)
 async def record() -> Examples:
     """Let the story happen, and return what was asked, answered and streamed."""
     async with http_robot(REACTING, settings=_SETTINGS) as robot:
+        robot.supervisor.submit(status(ARM_COMPUTER))
         await robot.pass_time(1)
+        robot.supervisor.link = ToldLink({ARM_COMPUTER: heard(robot.clock.now())})
         requests = [
             _exchange(asked, await _answer_of_a_record(asked))
             if asked.is_recorded

@@ -108,6 +108,8 @@ class Way:
     is_cut: bool = False
     keeps: bool = False
     """While it is cut: messages arrive once it is whole again."""
+    loses_beats: bool = False
+    """Only commands and reports arrive."""
     order_delay: Duration = 0
     """How much longer commands and reports take than beats."""
     doubles: bool = False
@@ -249,6 +251,8 @@ class LinkedRobot:
         for to, message in outputs.sendings:
             self.sent.append((self.now, to, message))
             way = self.way(process.name, to)
+            if way.loses_beats and isinstance(message, Beat):
+                continue
             if not way.is_cut:
                 extra = 0 if isinstance(message, Beat) else way.order_delay
                 arrives = self.now + way.delay + extra

@@ -18,8 +18,8 @@ Json: TypeAlias = Mapping[str, Any]
 _ABOUT = "list the other computers of the robot"
 _TEXT = """\
 List the devices of a robot of several computers: whether each is heard, what it
-owns, what it does by itself when it is cut off, and the emergency stops that are
-engaged on it. Of a device itself: whose word counts there.
+owns, what it does by itself when it is cut off, and the emergency stops that
+are engaged on it. Of a device itself: whose word counts there.
 
 exit code: 0 all devices are connected, or there is none; 1 one is not;
            2 no answer

@@ -2,6 +2,7 @@
 
 from domain.actor import Actor
 from domain.commands import AskFacts
+from domain.computers import ComputerName
 from domain.events.changes import ChangeRequested
 from domain.events.health import ErrorRaised, SignalPending, SignalRead
 from domain.events.parts import NodeReported
@@ -108,4 +109,12 @@ def test_what_was_taken_is_not_there_a_second_time() -> None:
     assert taken.parts == {ARM}
     assert taken.signals == {"estop"}
     assert taken.system_state
+    assert outbox.take() == Outputs()
+
+
+def test_devices_that_changed_are_told_once() -> None:
+    outbox = Outbox()
+    outbox.devices.add(ComputerName("arm"))
+
+    assert outbox.take().devices == {"arm"}
     assert outbox.take() == Outputs()

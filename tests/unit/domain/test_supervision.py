@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.commands import AskFacts, AskTransition, Command, Drive
+from domain.computers import ComputerName, DeviceState
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
@@ -34,6 +35,7 @@ from domain.inputs import (
     BackendStatus,
     CancelRequest,
     CheckpointReport,
+    DeviceStatus,
     EmergencyStopRequest,
     GoalFeedback,
     GoalResult,
@@ -125,6 +127,7 @@ REFUSED: list[tuple[Input, type[PilothouseError]]] = [
     (ShelveRequest("ESTOP", MAX_SHELF + 1, "noise"), InvalidValueError),
     (ShelveRequest("ESTOP", 1, "  "), InvalidValueError),
     (UnshelveRequest("NO_SUCH"), UnknownErrorNameError),
+    (DeviceStatus(ComputerName("leg"), DeviceState.LOST, "it is silent"), UnknownPartError),
 ]
 
 

@@ -21,7 +21,8 @@ class Chips extends HTMLElement {
     this.unreachable = this.#attention("unreachable");
     this.devices = el("span", { class: "chips-devices" });
     this.ownText = el("span");
-    this.own = el("span", { class: "chip badge", hidden: true }, el("span", { class: "more-word" }, "DEVICE "), this.ownText);
+    // On a phone it is wider than the header: whoever has keys only can scroll to what is behind it.
+    this.own = el("span", { class: "chip badge", hidden: true, tabindex: 0 }, el("span", { class: "more-word" }, "DEVICE "), this.ownText);
     this.unreal = el("span", { class: "chip badge", hidden: true });
     this.contact = el("span");
     this.delay = el("span", { class: "quiet" });

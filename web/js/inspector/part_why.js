@@ -41,11 +41,13 @@ class PartWhy extends HTMLElement {
   }
 }
 
+/** Kinds of setters that have a name, where that of the interface says too little. */
+const KINDS = { local: "the device by its reaction" };
 const SETTERS = { invariant: "a broken invariant", reaction: "a reaction" };
 
 function displacedWords({ target: requested }, target) {
   const name = target.rule ?? target.reaction;
-  const because = name ? `${target.because} ${name}` : (SETTERS[target.because] ?? target.because);
+  const because = name ? `${KINDS[target.because] ?? target.because} ${name}` : (SETTERS[target.because] ?? target.because);
   const from = requested ? `, in place of ${label(requested)} that was requested` : "";
   return `Target ${label(target)}, set by ${because}${from}.`;
 }

@@ -49,6 +49,15 @@ FAST, SLOW = active("FAST"), active("SLOW")
             "actuation stays active.SLOW after a broken invariant: ESTOP was active",
         ),
         (
+            DisplacementStays(ACTUATION, SLOW, Because.REACTION, None, "ESTOP was active", "LIMP"),
+            "actuation stays active.SLOW after reaction LIMP: ESTOP was active",
+        ),
+        (
+            DisplacementBegan(ACTUATION, SLOW, FAST, Because.LOCAL, None, "it is hot", "CALM"),
+            "actuation: reaction CALM, on its device, sets active.SLOW instead of active.FAST: "
+            "it is hot",
+        ),
+        (
             RuleNotApplied(ACTUATION, "park", inactive(), "ESTOP was active"),
             "actuation: rule park does not set inactive: ESTOP was active",
         ),

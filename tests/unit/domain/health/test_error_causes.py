@@ -7,7 +7,7 @@ from domain.health.error_causes import MAX_SHOWN, ErrorCauses
 from domain.lifecycle import LifecycleState
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import NodeModel, SmhModel, SystemModel
-from domain.snapshot import ErrorKey
+from domain.snapshot import ErrorKey, Severity
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from tests.support.models import active
 
@@ -148,3 +148,58 @@ def test_only_what_is_declared_with_neither_condition_nor_causes_is_reported() -
     assert not graph.is_reported(ErrorKey(LIDAR, "UNREACHABLE"))
     assert not graph.is_reported(ErrorKey(CAMERA, "BLIND"))
     assert not graph.is_reported(ErrorKey(CAMERA, "JAMMED"))
+
+
+# --- devices -------------------------------------------------------------------------------------
+
+ARM = PartName("arm")
+GONE = ErrorKey(ARM, "LOST")
+
+
+def with_device(**errors: dict[str, DeclaredError]) -> ErrorCauses:
+    """Return the graph of a robot whose lidar is on a device."""
+    nodes = {name: NodeModel(name) for name in (LIDAR, CAMERA)}
+    declared = {PartName(part): own for part, own in errors.items()}
+    model = SmhModel(nodes, {}, errors=declared)
+    return ErrorCauses(model, devices={ARM: (LIDAR,)})
+
+
+def test_a_node_is_unreachable_because_its_device_is_lost() -> None:
+    graph = with_device()
+    other = ErrorKey(CAMERA, "UNREACHABLE")
+
+    assert present(graph, LOST, GONE) == ["arm.LOST"]
+    assert present(graph, LOST) == []
+    assert present(graph, other, GONE) == []
+    assert list(graph.effects(GONE, {GONE, LOST, other}.__contains__)) == [LOST]
+    assert list(graph.effects(ErrorKey(ARM, "LATE"), {LOST}.__contains__)) == []
+    assert graph.place(GONE) < graph.place(LOST)
+
+
+def test_what_the_file_says_of_an_unreachable_node_counts_beside_its_device() -> None:
+    graph = with_device(lidar={"UNREACHABLE": DeclaredError(severity=Severity.WARNING)})
+
+    assert present(graph, LOST, GONE) == ["arm.LOST"]
+    assert list(graph.effects(GONE, {GONE, LOST}.__contains__)) == [LOST]
+    assert graph.place(GONE) < graph.place(LOST)
+    assert graph.severity_of(LOST) is Severity.WARNING
+
+
+def test_a_device_has_the_errors_of_devices() -> None:
+    graph = with_device()
+
+    assert list(graph.names_of(ARM)) == ["LATE", "LOST", "DEVICE_CONFLICT"]
+    assert "LOST" not in graph.names_of(LIDAR)
+    assert [graph.is_of_device(key) for key in (GONE, LOST, ErrorKey(None, "ESTOP"))] == [
+        True,
+        False,
+        False,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("error", "severity"),
+    [("LATE", "warning"), ("LOST", "urgent"), ("DEVICE_CONFLICT", "urgent"), ("OTHER", "warning")],
+)
+def test_a_lost_device_is_urgent_and_a_late_one_is_not(error: str, severity: str) -> None:
+    assert with_device().severity_of(ErrorKey(ARM, error)) == severity

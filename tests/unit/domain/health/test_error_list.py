@@ -2,8 +2,11 @@
 
 import pytest
 
+from domain.events.health import ErrorCleared, ErrorRaised
+from domain.health.error_causes import ErrorCauses
 from domain.health.error_list import NORMAL, ErrorList, Found
 from domain.outbox import Outbox
+from domain.parts.system_model import NodeModel, SmhModel
 from domain.snapshot import ErrorKey, ErrorState, Severity
 from domain.state_and_mode import PartName
 
@@ -121,3 +124,37 @@ def test_errors_of_parts_are_counted_by_name_while_they_are_on(errors: ErrorList
     errors.note(ErrorKey(PartName("base"), "UNREACHABLE"), on(), 1)
     errors.note(LOST, NORMAL, 2)
     assert errors.parts_with == {"UNREACHABLE": 1}
+
+
+def test_what_turns_out_to_follow_from_another_error_of_the_same_moment_was_not_first() -> None:
+    arm = PartName("arm")
+    model = SmhModel({arm: NodeModel(arm)}, {})
+    errors = ErrorList(Outbox(), ErrorCauses(model))
+    deviates = ErrorKey(arm, "DEVIATES")
+    errors.note(deviates, on(), 5)
+    assert errors.view(deviates).first_out
+
+    errors.note(LOST, on(), 5)
+    errors.renew_roots(deviates)
+
+    assert errors.view(deviates).roots == (LOST,)
+    assert [errors.view(key).first_out for key in (LOST, deviates)] == [True, False]
+
+
+def test_an_error_of_a_device_is_told_as_one() -> None:
+    outbox = Outbox()
+    arm, node = PartName("arm"), PartName("manipulator")
+    model = SmhModel({node: NodeModel(node)}, {})
+    errors = ErrorList(outbox, ErrorCauses(model, devices={arm: (node,)}))
+    key = ErrorKey(arm, "LOST")
+    errors.raise_(key, on(), 5)
+    errors.clear(key)
+
+    raised, cleared = [e.event for e in outbox.take().events if e.kind.startswith("error.")]
+
+    assert isinstance(raised, ErrorRaised)
+    assert isinstance(cleared, ErrorCleared)
+    assert raised.of_device
+    assert cleared.of_device
+    assert (raised.notable, cleared.notable) == (False, False)
+    assert errors.view(key).severity is Severity.URGENT

@@ -220,6 +220,38 @@ def test_while_it_is_cut_off_it_carries_out_no_command() -> None:
     assert robot.base.orders == []
 
 
+def test_a_command_that_gets_through_where_beats_do_not_is_refused_once_it_is_lost() -> None:
+    robot = LinkedRobot.out_of_step()
+    robot.way(SUPERVISOR, BASE).loses_beats = True
+    robot.run(1.46)
+    request = robot.order()
+    robot.run(0.01)
+
+    assert [process.statuses[-1][1] for process in (robot.supervisor, robot.base)] == [
+        "late",
+        "lost",
+    ]
+    assert robot.orders_sent()[-1].command.request == request
+    assert robot.base.orders == []
+
+
+def test_a_young_command_of_before_the_loss_is_refused_after_the_return() -> None:
+    robot = connected()
+    way = robot.way(SUPERVISOR, BASE)
+    way.loses_beats, way.order_delay = True, seconds(1)
+    robot.run(1.3)
+    robot.order()
+    robot.run(0.3)
+    way.loses_beats = False
+    robot.run(0.65)
+    is_back = robot.base.status().state
+    robot.run(0.2)
+
+    assert is_back is DeviceState.CONNECTED
+    assert robot.base.orders == []
+    assert robot.base.machine.drops.counts[Drop.REFUSED] == 1
+
+
 def test_a_command_for_another_node_is_refused() -> None:
     robot = connected()
     order = an_order(robot)

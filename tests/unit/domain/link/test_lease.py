@@ -106,8 +106,7 @@ def test_an_echo_of_what_was_never_sent_or_was_echoed_counts_for_nothing() -> No
 def test_beats_in_a_burst_are_remembered_up_to_a_bound() -> None:
     lease = Lease(LinkSettings())
     first = lease.note_sent(0)
-    for _ in range(2_000):
-        last = lease.note_sent(0)
+    last = [lease.note_sent(0) for _ in range(2_000)][-1]
 
     assert not lease.was_sent_lately(first, 0)
     assert lease.was_sent_lately(last, 0)
@@ -132,3 +131,9 @@ def test_who_is_silent_says_since_when() -> None:
     assert told.lease.is_silent(seconds(1.6))
     assert told.lease.why_lost(seconds(2.2)) == "has not been heard for 2.1 s"
     assert told.lease.why_late(seconds(1)) == "has not been heard for 0.9 s"
+
+
+def test_without_anything_heard_there_is_no_lease() -> None:
+    lease = Lease(LinkSettings())
+
+    assert not lease.take_echo(lease.note_sent(0), 0)

@@ -125,6 +125,16 @@ def test_a_process_that_is_not_known_to_live_is_no_conflict() -> None:
     assert wire.peer.refused == ""
 
 
+def test_a_beat_of_before_of_a_process_that_waits_is_nothing() -> None:
+    wire = Wire()
+    wire.hear(A)
+    wire.hear(B, skips=8)
+    old = Beat(BASE, B, 3, OTHER_TERMS)
+
+    assert wire.peer.hear(old, wire.now) is Heard.NOTHING
+    assert wire.peer.refused == ""
+
+
 def test_a_process_that_does_not_fit_is_refused_at_once_and_forgotten_when_silent() -> None:
     wire = Wire()
     wire.hear(B, OTHER_TERMS)

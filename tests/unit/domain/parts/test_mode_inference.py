@@ -7,6 +7,7 @@ import pytest
 from hypothesis import Phase, find, given, settings
 
 from domain.errors import UnknownPartError
+from domain.findings import Blocker
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
@@ -666,3 +667,32 @@ def test_of_a_node_that_was_never_heard_nothing_is_known() -> None:
     assert inference.last_known(BASE) is None
     inference.report(NodeReport(BASE, reachable=False))
     assert inference.last_known(BASE) is None
+
+
+LOST_DEVICE = Blocker("DEVICE_LOST", "device arm is not connected", ())
+
+
+def test_why_nothing_is_heard_of_nodes_is_told_of_all_that_are_unknown_because_of_it() -> None:
+    inference = _inference(drive_base="active.SLOW")
+    inference.report(NodeReport(ARM, reachable=False))
+
+    assert inference.note_cut_off((ARM,), LOST_DEVICE) == {ARM, ACTUATION}
+
+    why = "manipulator is unreachable: device arm is not connected"
+    assert inference.actual(ARM).reason == inference.actual(ACTUATION).reason == why
+    assert inference.note_cut_off((ARM,), LOST_DEVICE) == set()
+
+    assert inference.note_cut_off((ARM,), None) == {ARM, ACTUATION}
+    assert inference.actual(ACTUATION).reason == "manipulator is unreachable"
+
+
+def test_a_node_that_is_still_heard_is_what_it_is() -> None:
+    inference = _inference(drive_base="active.SLOW", manipulator="inactive")
+
+    assert inference.note_cut_off((ARM,), LOST_DEVICE) == set()
+
+    assert _label(inference, ARM) == "inactive"
+    inference.report(NodeReport(ARM, reachable=False))
+    assert inference.actual(ARM).reason == (
+        "manipulator is unreachable: device arm is not connected"
+    )

@@ -1,5 +1,8 @@
+from dataclasses import replace
+
 import pytest
 
+from domain.findings import Blocker
 from domain.lifecycle import LifecycleState
 from domain.parts.node_doubts import doubt_of
 from domain.parts.node_facts import NodeFacts
@@ -34,3 +37,15 @@ def test_a_node_that_goes_nowhere_says_why(facts: NodeFacts, code: str, message:
 
 def test_a_node_in_a_known_state_is_in_no_doubt() -> None:
     assert doubt_of(BASE, NodeFacts(LifecycleState.INACTIVE, reachable=True), (BASE,)) is None
+
+
+def test_a_node_whose_device_is_lost_is_in_doubt_because_of_that() -> None:
+    lost = Blocker("DEVICE_LOST", "device base is not connected", (), since=5, refuses=False)
+    facts = NodeFacts(LifecycleState.ACTIVE, reachable=False, cut_off=lost)
+
+    doubt = doubt_of(BASE, facts, ("actuation", BASE))
+
+    assert doubt is not None
+    assert doubt.message == "drive_base is unreachable: device base is not connected"
+    assert not doubt.root_cause
+    assert doubt.causes == (replace(lost, path=("actuation", BASE)),)

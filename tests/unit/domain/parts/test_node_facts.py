@@ -2,6 +2,7 @@
 
 import pytest
 
+from domain.findings import Blocker
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.parts.node_facts import NodeFacts
@@ -117,3 +118,13 @@ def test_a_report_tells_whether_it_is_news(report: NodeReport, *, different: boo
 
 def test_the_first_word_of_a_node_is_news_even_if_it_says_nothing() -> None:
     assert NodeFacts().take(NodeReport(ARM))
+
+
+def test_a_node_whose_device_is_not_connected_says_so() -> None:
+    lost = Blocker("DEVICE_LOST", "device arm is not connected", ())
+    assert NodeFacts(cut_off=lost).why_unknown == (
+        "has never reported a state: device arm is not connected"
+    )
+    assert NodeFacts(reachable=False, cut_off=lost).why_unknown == (
+        "is unreachable: device arm is not connected"
+    )

@@ -2,8 +2,11 @@
 
 import pytest
 
+from domain.computers import ComputerName
 from domain.events.changes import ChangeRequested, StepStarted
 from domain.events.event import RecordedEvent
+from domain.events.parts import NodeUnreachable
+from domain.findings import Blocker
 from domain.identifiers import ChangeId
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
@@ -411,3 +414,50 @@ def test_a_node_that_reports_before_its_turn_is_told_to_have_deviated_first() ->
     while robot.parts.has_more:
         robot.go_on(now=9)
     assert sorted(map(str, robot.began())) == sorted(BIG.parts), "each once"
+
+
+# --- other computers -----------------------------------------------------------------------------
+
+
+def test_a_node_names_the_computer_that_owns_it() -> None:
+    parts = Parts(nested_model(), Outbox(), {ARM: ComputerName("arm")})
+
+    assert parts.view(ARM).device == "arm"
+    assert parts.view(BASE).device is None
+    assert parts.view(ACTUATION).device is None
+
+
+def test_a_node_that_is_lost_with_its_computer_is_told_with_it(robot: Robot) -> None:
+    robot.report(NodeReport(ARM, S.INACTIVE, reachable=True))
+    robot.parts.note_cut_off((ARM,), Blocker("DEVICE_LOST", "device arm is not connected", ()))
+
+    (lost,) = [
+        event.event
+        for event in robot.report(NodeReport(ARM, reachable=False), 5)
+        if isinstance(event.event, NodeUnreachable)
+    ]
+
+    assert lost.with_device
+    assert robot.parts.view(ARM).actual.reason == (
+        "manipulator is unreachable: device arm is not connected"
+    )
+
+
+def test_why_nothing_is_heard_changes_what_is_shown(robot: Robot) -> None:
+    robot.parts.settle(0)
+    robot.outbox.take()
+    assert robot.parts.view(ARM).actual.reason == "manipulator has never reported a state"
+
+    robot.parts.note_cut_off((ARM,), Blocker("DEVICE_LOST", "device arm is not connected", ()))
+    robot.parts.settle(0)
+
+    assert robot.outbox.take().parts == {ARM}
+    assert robot.parts.view(ARM).actual.reason == (
+        "manipulator has never reported a state: device arm is not connected"
+    )
+
+
+def test_a_robot_of_one_computer_awaits_nobody(robot: Robot) -> None:
+    assert not robot.parts.awaits_devices
+    robot.parts.await_devices(wait=True)
+    assert robot.parts.awaits_devices

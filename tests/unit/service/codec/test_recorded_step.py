@@ -1,5 +1,6 @@
 import pytest
 
+from domain.computers import ComputerName
 from domain.identifiers import ChangeId, TaskId
 from domain.inputs import TimePassed
 from domain.outbox import NOTHING, Outputs
@@ -27,6 +28,8 @@ def test_each_changed_view_has_its_own_checksum() -> None:
         Outputs(parts=frozenset({ARM, BASE})),
         Outputs(errors=frozenset({ErrorKey(ARM, "DEVIATES")})),
         Outputs(errors=frozenset({ErrorKey(None, "ESTOP")})),
+        Outputs(devices=frozenset({ComputerName("arm")})),
+        Outputs(devices=frozenset({ComputerName("arm"), ComputerName("base")})),
         Outputs(system_state=True),
         Outputs(task_changed=True),
         Outputs(vehicle_changed=True),

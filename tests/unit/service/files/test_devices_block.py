@@ -1,12 +1,15 @@
 """The block `devices`, as somebody writes it into a robot file."""
 
+import pytest
+
 from domain.devices.settings import NOTHING_OFFLINE, DeviceSettings
+from domain.errors import InvalidValueError
 from domain.lifecycle import LifecycleState
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import seconds
 from service.files.model_file import read_model
-from service.files.robot_file import RobotSettings, read_robot_file
+from service.files.robot_file import RobotSettings, read_robot_file, robot_settings_of
 from tests.support.models import ARM, BASE, actuation_model
 
 MODEL = actuation_model()
@@ -96,3 +99,16 @@ def test_two_files_that_mean_the_same_have_the_same_owners() -> None:
     )
 
     assert one.ownership_text(MODEL) == other.ownership_text(MODEL)
+
+
+def test_a_simulation_is_one_computer_whatever_the_robot_has() -> None:
+    robot = robot_settings_of({"devices": {"base": {"parts": ["drive_base"]}}}, MODEL)
+
+    assert robot.to_device_settings(MODEL) == ()
+
+
+def test_a_simulation_checks_the_devices_all_the_same() -> None:
+    with pytest.raises(InvalidValueError) as caught:
+        robot_settings_of({"devices": {"base": {"parts": ["drive_bas"]}}}, MODEL)
+
+    assert caught.value.pointer == "/devices/base/parts/0"

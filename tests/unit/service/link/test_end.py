@@ -8,7 +8,7 @@ import pytest
 
 from domain.commands import AskFacts
 from domain.computers import SUPERVISOR, ComputerName, Incarnation
-from domain.inputs import BackendStatus, NodeReport, ReportBacklog
+from domain.inputs import NodeReport, ReportBacklog
 from domain.link.messages import Beat, Report, Terms
 from domain.link.outputs import NOTHING, LinkOutputs, Sending
 from domain.state_and_mode import PartName
@@ -45,7 +45,6 @@ async def here() -> AsyncIterator[RunningEnd]:
     here = RunningEnd()
     run = asyncio.create_task(here.end.run(here.delivered.append), name="end")
     await settle()
-    here.delivered.clear()
     yield here
     run.cancel()
     await asyncio.wait([run])
@@ -140,16 +139,6 @@ async def test_of_very_many_inputs_some_are_delivered_in_each_turn(here: Running
     assert before <= first.since <= here.clock.now()
     assert others == list(many)
     assert last == ReportBacklog("link", None)
-
-
-async def test_it_says_first_that_there_is_a_backend() -> None:
-    here = RunningEnd()
-    run = asyncio.create_task(here.end.run(here.delivered.append), name="end")
-    await settle()
-    run.cancel()
-    await asyncio.wait([run])
-
-    assert here.delivered == [BackendStatus(available=True)]
 
 
 async def test_what_the_core_raises_ends_the_run() -> None:

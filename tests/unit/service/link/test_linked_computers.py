@@ -8,10 +8,11 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.computers import SUPERVISOR, ComputerName
-from domain.inputs import EmergencyStopRequest, ModeRequest, TransitionRequest
+from domain.inputs import EmergencyStopRequest, ModeRequest, Reading, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition
 from domain.simulation.network import Wire
 from domain.state_and_mode import ModeName, PartName, StateAndMode
+from domain.timebase import seconds
 from service.link.memory import MemoryNetwork
 from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
@@ -30,6 +31,8 @@ from tests.support.models import (
 from tests.support.offset_clock import OffsetClock
 
 AHEAD_S = {"base": 300.0, "arm": -300.0}
+MOTOR = "motor_temperature"
+"""A signal that is read at the arm."""
 
 
 class Robot:
@@ -52,7 +55,8 @@ class Robot:
         """Start a computer, with nodes that are new too."""
         clock = OffsetClock(self.clock, AHEAD_S.get(name, 0.0))
         link = self.network.link(ComputerName(name))
-        made = make_computer(actuation_model(), settings_of(name), link, clock)
+        robot = settings_of(name, signals={MOTOR: {"unit": "degC", "part": ARM}})
+        made = make_computer(actuation_model(), robot, link, clock)
         self.services[name], self.nodes[name] = made
         self.running.start(name, self.services[name])
 
@@ -171,3 +175,16 @@ async def test_a_stop_on_any_computer_stops_all_within_a_beat(
     await robot.clock.advance(0.1)
 
     assert all(service.core.emergency_stop().engaged for service in robot.services.values())
+
+
+async def test_a_reading_at_a_device_is_as_old_at_the_supervisor_as_it_is_there(
+    robot: Robot,
+) -> None:
+    arm = robot.services["arm"]
+    a_second_ago = arm.clock.now() - seconds(1)
+    arm.readings.submit([Reading(MOTOR, 40.0, a_second_ago)], "somebody at the arm")
+    await robot.clock.advance(0.1)
+
+    seen = robot.supervisor.core.signal(MOTOR)
+    assert seen.value == 40.0
+    assert seen.stamp == robot.clock.now() - seconds(1.1)

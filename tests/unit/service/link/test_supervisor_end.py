@@ -3,7 +3,7 @@
 import asyncio
 
 from domain.commands import AskFacts
-from domain.inputs import NodeReport
+from domain.inputs import BackendStatus, NodeReport
 from service.link.status import LinkStatus
 from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.ports import BackendMessage
@@ -39,3 +39,13 @@ async def test_remote_nodes_deliver_nothing_by_themselves_until_they_are_cancell
     run.cancel()
     await asyncio.wait([run])
     assert delivered == []
+
+
+async def test_it_says_first_that_devices_can_be_reached_at_all() -> None:
+    delivered: list[BackendMessage] = []
+    run = asyncio.create_task(make_end(ScriptedMachine()).run(delivered.append))
+    await settle()
+    run.cancel()
+    await asyncio.wait([run])
+
+    assert delivered == [BackendStatus(available=True)]

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 import zenoh
@@ -241,6 +242,83 @@ async def test_a_link_that_is_cancelled_while_it_opens_is_closed() -> None:
 
     with socket.create_server(("127.0.0.1", robot.port)):
         pass
+
+
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zenoh_link, "_WATCH_S", 0.02)
+    monkeypatch.setattr(zenoh_link, "_GIVE_UP_S", 0.4)
+
+
+@pytest.mark.usefixtures("impatient")
+async def test_a_device_that_zenoh_does_not_connect_again_opens_a_new_session() -> None:
+    robot = Robot(None, "tcp")
+    base = RunningLink(BASE, robot.link(BASE))
+    link, good = base.link, configuration(BASE, robot.others(BASE), robot.endpoints(BASE), None)
+    assert isinstance(link, ZenohLink)
+    link._configuration = {**good, "connect": {"endpoints": []}}  # noqa: SLF001  # looks for nobody
+
+    async with robot.running(SUPERVISOR) as supervisor, base:
+        await asyncio.sleep(0.2)
+        link._configuration = good  # noqa: SLF001
+        await base.reach(supervisor)
+        await supervisor.reach(base)
+        for number in range(5):
+            supervisor.send(BASE, b"%d" % number)
+
+        assert await base.hear(5) == [(SUPERVISOR, b"%d" % number) for number in range(5)]
+
+
+@needs_openssl
+@pytest.mark.usefixtures("impatient")
+async def test_a_device_that_reaches_nobody_over_quic_takes_tls(folder: Path) -> None:
+    robot = Robot(folder)
+    link = robot.link(SUPERVISOR)
+    only_tls = {"endpoints": [f"tls/127.0.0.1:{robot.port}"]}
+    link._configuration = {**link._configuration, "listen": only_tls}  # noqa: SLF001
+
+    async with RunningLink(SUPERVISOR, link) as supervisor, robot.running(BASE) as base:
+        await base.reach(supervisor)
+        await supervisor.reach(base)
+
+
+@pytest.mark.usefixtures("impatient")
+async def test_a_supervisor_that_looks_for_others_keeps_its_session(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    opening = Mock(wraps=zenoh.open)
+    monkeypatch.setattr(zenoh, "open", opening)
+    at = f"tcp/127.0.0.1:{free_port()}"
+    link = ZenohLink(SUPERVISOR, [BASE], Endpoints(("tcp/127.0.0.1:0",), (at,)))
+
+    async with RunningLink(SUPERVISOR, link):
+        await asyncio.sleep(1.0)
+
+    assert opening.call_count == 1
+
+
+@pytest.mark.usefixtures("impatient")
+async def test_devices_hear_each_other_on_while_the_supervisor_is_down() -> None:
+    robot = Robot(None, "tcp")
+
+    async with robot.running(BASE) as base, robot.running(ARM) as arm:
+        async with robot.running(SUPERVISOR) as supervisor:
+            for other in (base, arm):
+                await other.reach(supervisor)
+            await base.reach(arm)
+            await arm.reach(base)
+        for number in range(40):
+            base.send(ARM, b"%d" % number)
+            arm.send(BASE, b"%d" % number)
+            await asyncio.sleep(0.05)
+        await base.reach(arm)
+        await arm.reach(base)
+        async with robot.running(SUPERVISOR) as supervisor:
+            await base.reach(supervisor)
+            await arm.reach(supervisor)
+
+        assert arm.received == [(BASE, b"%d" % number) for number in range(40)]
+        assert base.received == [(ARM, b"%d" % number) for number in range(40)]
 
 
 def test_zenoh_is_needed_by_its_module_only() -> None:

@@ -10,9 +10,11 @@ from service.link.zenoh_settings import (
     BEAT,
     MESSAGE,
     access_control,
+    at_any_port,
     check_endpoints,
     configuration,
     key,
+    over_tls,
 )
 
 BASE, ARM = ComputerName("base"), ComputerName("arm")
@@ -53,8 +55,43 @@ def test_a_connection_is_tried_again_at_least_five_times_a_second() -> None:
     ],
 )
 def test_quic_sends_datagrams_unless_the_endpoint_says_otherwise(given: str, made: str) -> None:
-    assert configured(given, given, FILES)["listen"]["endpoints"] == [made]
+    assert configured(given, given, FILES)["listen"]["endpoints"][0] == made
     assert configured(given, given, FILES)["connect"]["endpoints"] == [made]
+
+
+@pytest.mark.parametrize(
+    ("endpoint", "detour"),
+    [
+        (f"quic/{NETWORK}", f"tls/{NETWORK}"),
+        (f"quic/{NETWORK}?rel=1#iface=eth0", f"tls/{NETWORK}"),
+        (f"tls/{NETWORK}", f"tls/{NETWORK}"),
+        (f"tcp/{NETWORK}", f"tcp/{NETWORK}"),
+    ],
+)
+def test_who_is_not_reached_over_quic_may_be_over_tls(endpoint: str, detour: str) -> None:
+    assert over_tls(endpoint) == detour
+
+
+def test_whoever_listens_at_a_port_of_quic_does_for_tls_as_well() -> None:
+    at_a_port, anywhere = configured(f"quic/{NETWORK}"), configured("quic/10.0.0.1:0")
+
+    assert at_a_port["listen"]["endpoints"] == [
+        f"quic/{NETWORK}?mixed_rel=auto",
+        f"tls/{NETWORK}#exit_on_failure=false",
+    ]
+    assert anywhere["listen"]["endpoints"] == ["quic/10.0.0.1:0?mixed_rel=auto"]
+
+
+@pytest.mark.parametrize(
+    ("endpoint", "elsewhere"),
+    [
+        ("tcp/127.0.0.1:7470", "tcp/127.0.0.1:0"),
+        ("tls/[::1]:7470", "tls/[::1]:0"),
+        ("quic/10.0.0.1:7470", "quic/10.0.0.1:0?mixed_rel=auto"),
+    ],
+)
+def test_an_endpoint_may_be_tried_at_another_port(endpoint: str, elsewhere: str) -> None:
+    assert at_any_port(endpoint) == elsewhere
 
 
 def test_certificates_are_of_both_ends() -> None:
