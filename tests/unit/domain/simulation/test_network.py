@@ -180,6 +180,16 @@ def test_a_computer_that_is_killed_takes_along_what_is_under_way() -> None:
     assert computers.arrived() == [3]
 
 
+def test_the_network_is_empty_once_the_last_message_has_arrived() -> None:
+    computers = Computers(Wire(delay=seconds(0.2)))
+    assert computers.network.empty_at() is None
+
+    computers.send(START, 1)
+    computers.send(START + seconds(0.1), 2)
+
+    assert computers.network.empty_at() == START + seconds(0.3)
+
+
 def test_the_same_seed_leads_to_the_same_arrivals() -> None:
     wire = Wire(
         delay=seconds(0.05), jitter=seconds(0.2), loss=0.3, duplication=0.1, duplicate_delay=9
