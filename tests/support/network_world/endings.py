@@ -108,7 +108,7 @@ def targets_are_pursued(world: World) -> None:
         refusal = world.ask(SUPERVISOR, ModeRequest(part, mode, ADA))
         assert refusal is None, f"{part} was refused {mode}: {refusal}"
     core = world.supervisor.core
-    world.wait_until(lambda: all(core.part(part).converged for part in MODEL.parts), PURSUED_S)
+    world.wait_until(lambda: _is_at_rest(core), PURSUED_S)
     world.wait(0.25)
     for node in MODEL.nodes:
         state = world.owner(node).nodes.state_of(node)
@@ -116,6 +116,12 @@ def targets_are_pursued(world: World) -> None:
         assert core.part(node).converged, f"{node} is not where its target says"
     assert world.owner(BASE).nodes.parameters_of(BASE)["max_speed"] == 0.9
     assert world.owner(ARM).nodes.parameters_of(ARM)["max_torque"] == 0.2
+
+
+def _is_at_rest(core: Supervision) -> bool:
+    """Tell whether all parts are where their targets say, and nothing is changed any more."""
+    is_changing = any(not change.status.is_final for change in core.changes())
+    return not is_changing and all(core.part(part).converged for part in MODEL.parts)
 
 
 def a_stop_is_known_everywhere(world: World) -> None:
