@@ -52,6 +52,9 @@ NOT_OF_THE_ENVIRONMENT = shutil.ignore_patterns(
     "fft",
     "ma",
     "polynomial",
+    # Modules of C that only the tests of numpy import.
+    "_*_tests.*.so",
+    "_simd.*.so",
     "*.pxd",
     "*.pyx",
     "*.a",
