@@ -177,6 +177,8 @@ class NodeSteps:
             verdict = judge_report(step, report, self._facts[report.node])
             if verdict is not None:
                 self._end_step(step, verdict.status, verdict.error, now)
+        if report.reachable is False and self._facts[report.node].cut_off is not None:
+            self._give_up(report.node, now)
         self._advance(report.node, now)
 
     def answer(self, answer: NodeAnswer, now: Instant) -> None:
@@ -315,6 +317,20 @@ class NodeSteps:
             self._ask_facts(step.node, now)
             return
         self._advance(step.node, now)
+
+    def _give_up(self, node: PartName, now: Instant) -> None:
+        """Let a node do nothing more whose computer is cut off.
+
+        It may come back soon, and at rest on purpose: what was begun before the cut does not go on.
+        """
+        why = f"the node {self._facts[node].why_unknown}"
+        step = self._in_flight.get(node)
+        if step is not None:
+            self._end_step(step, StepStatus.TIMED_OUT, why, now)
+        pursuit = self._take_up(node)
+        if pursuit is not None:
+            outcome = StepStatus.TIMED_OUT if pursuit.has_begun else StepStatus.FAILED
+            self._finish(pursuit, outcome, f"{node}: {why}", now)
 
     def _ask_facts(self, node: PartName, now: Instant) -> None:
         self._outbox.command(AskFacts(self._outbox.next_request(), node))
