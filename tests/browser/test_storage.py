@@ -171,7 +171,8 @@ def refuse_first(page: Page, path: str) -> list[Any]:
 def test_a_stop_that_storage_does_not_let_go_is_told_and_can_be_released_at_once(
     desktop: Page, service: Service
 ) -> None:
-    service.request("PUT", "/emergency_stop", {"engaged": True, "reason": "smoke"})
+    engaged = service.request("PUT", "/emergency_stop", {"engaged": True, "reason": "smoke"})
+    shown = engaged["stops"][0]["id"]
     asked = refuse_first(desktop, "**/emergency_stop")
     press(desktop.get_by_role("button", name="Release the stop (hold)", exact=True), desktop)
     stop = desktop.locator("ph-stop-release")
@@ -179,7 +180,8 @@ def test_a_stop_that_storage_does_not_let_go_is_told_and_can_be_released_at_once
     expect(notice(desktop)).to_be_hidden()
     press(desktop.get_by_role("button", name=f"Release the stop (hold){FORGETS}"), desktop)
     expect(desktop.get_by_role("button", name=re.compile("^STOP"))).to_have_text("STOP")
-    body = {"engaged": False, "reason": "released on the monitor page"}
+    # It names the stop that was on show.
+    body = {"engaged": False, "reason": "released on the monitor page", "stops": [shown]}
     assert asked == [("PUT", body), ("PUT", {**body, "volatile": True})]
 
 
