@@ -147,10 +147,9 @@ class _Cut:
 
     def _cut_errors(self) -> None:
         """Leave out errors that are not found at the device, until no more rest on them."""
-        has_more = True
+        has_more, vocabulary = True, self._vocabulary()
         while has_more:
-            has_more = False
-            vocabulary = self._vocabulary()
+            has_more, vocabulary = False, self._vocabulary()
             for part, own in self._parts.errors.items():
                 for name, error in list(own.items()):
                     reason = _why_not_found(error, vocabulary)

@@ -203,6 +203,8 @@ def test_a_stop_at_a_device_that_is_cut_off_stops_the_robot_once_it_is_back(robo
     robot.network.heal()
     until(lambda: robot.supervisor.ask("GET", "/emergency_stop")["engaged"])
     until(lambda: robot.base.ask("GET", "/emergency_stop")["engaged"])
+    # A stop is taken at once; a release only counts on a connection.
+    until(robot.are_connected)
 
     robot.supervisor.ask("PUT", "/emergency_stop", {"engaged": False})
     for host in (robot.supervisor, robot.base, robot.arm):

@@ -63,6 +63,8 @@ def test_once_as_json_is_one_object_with_each_member_as_the_interface_has_it() -
         "holds",
         "errors",
         "reactions",
+        "devices",
+        "this_device",
     ]
     assert seen["system_state"]["errors"] == ["BATTERY_LOW"]
     assert seen["parts"]["actuation"] == systems["items"][0]
