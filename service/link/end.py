@@ -24,6 +24,10 @@ log = logging.getLogger(__name__)
 
 _SOURCE = "link"
 
+MAX_WAITING = 50_000
+"""Inputs that wait for the core, from which on only beats are heard. What a report that is left out
+would have told is in the next complete one, a second later."""
+
 
 class Machine(Protocol):
     """What decides at one end of the link: `SupervisorLink` or `DeviceLink`."""
@@ -93,8 +97,11 @@ class LinkEnd:
         try:
             message = decode(text)
         except CodecError as error:
-            self._status.note_unreadable(sender)
+            self._status.note_left_out(sender)
             log.debug("%s sent what is no message: %s", sender, error)
+            return
+        if len(self._waiting) >= MAX_WAITING and not isinstance(message, Beat):
+            self._status.note_left_out(sender)
             return
         now = self._clock.now()
         self._status.note_heard(sender, message, now)

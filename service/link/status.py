@@ -36,7 +36,7 @@ class LinkStatus:
             measured.heard_at,
             measured.round_trip,
             measured.lost_share(now),
-            measured.unreadable,
+            measured.left_out,
         )
 
     def note_sent(self, to: ComputerName, message: Message, now: Instant) -> None:
@@ -51,11 +51,11 @@ class LinkStatus:
         if measured is not None and isinstance(message, Beat):
             measured.note_beat(message, now)
 
-    def note_unreadable(self, sender: ComputerName) -> None:
-        """Note bytes that came in and were no message."""
+    def note_left_out(self, sender: ComputerName) -> None:
+        """Note what came in and was no message, or one too many."""
         measured = self._measured.get(sender)
         if measured is not None:
-            measured.unreadable += 1
+            measured.left_out += 1
 
 
 class _Measured:
@@ -65,7 +65,7 @@ class _Measured:
         self._beat = beat
         self.heard_at: Instant | None = None
         self.round_trip: Duration | None = None
-        self.unreadable = 0
+        self.left_out = 0
         self.sent = deque[tuple[Incarnation, int, Instant]](maxlen=_MOST_ECHOES)
         self._beats = deque[Instant](maxlen=_MOST_BEATS)
         self._since: Instant = 0

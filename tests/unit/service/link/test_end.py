@@ -13,7 +13,7 @@ from domain.link.messages import Beat, Report, Terms
 from domain.link.outputs import NOTHING, LinkOutputs, Sending
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
-from service.link.end import LinkEnd
+from service.link.end import MAX_WAITING, LinkEnd
 from service.link.status import LinkStatus
 from service.link.wire import decode
 from service.pacing import AT_ONCE
@@ -139,6 +139,20 @@ async def test_of_very_many_inputs_some_are_delivered_in_each_turn(here: Running
     assert before <= first.since <= here.clock.now()
     assert others == list(many)
     assert last == ReportBacklog("link", None)
+
+
+async def test_as_long_as_very_much_waits_only_beats_are_heard(here: RunningEnd) -> None:
+    here.machine.answer = lambda: LinkOutputs(inputs=reports(MAX_WAITING))
+    here.link.hear(THERE, REPORT)
+    here.machine.answer = lambda: NOTHING
+    here.link.hear(THERE, REPORT)
+    here.link.hear(THERE, BEAT)
+
+    assert here.machine.heard == [(THERE, REPORT), (THERE, BEAT)]
+    assert here.end.connection(THERE).dropped == 1
+    await settle()
+    here.link.hear(THERE, BEAT)
+    assert here.machine.heard[-1] == (THERE, BEAT)
 
 
 async def test_what_the_core_raises_ends_the_run() -> None:

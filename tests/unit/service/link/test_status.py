@@ -79,7 +79,7 @@ def test_an_echo_of_another_run_of_this_computer_measures_nothing() -> None:
 
 def test_what_cannot_be_read_is_counted() -> None:
     status = LinkStatus({ARM: BEAT})
-    status.note_unreadable(ARM)
+    status.note_left_out(ARM)
 
     assert status.of(ARM, at(0)).dropped == 1
 
@@ -89,6 +89,6 @@ def test_a_computer_that_does_not_belong_to_the_robot_is_not_measured() -> None:
     stranger = ComputerName("stranger")
     status.note_heard(stranger, heard(1), at(0))
     status.note_sent(stranger, sent(1), at(0))
-    status.note_unreadable(stranger)
+    status.note_left_out(stranger)
 
     assert status.of(stranger, at(1)) == Connection()
