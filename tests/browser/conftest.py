@@ -11,6 +11,8 @@ from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Complaints, Serv
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
+EXPECTED_WITHIN_MS = 15_000
+
 
 @pytest.fixture(scope="module")
 def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
@@ -31,6 +33,8 @@ def browser() -> Iterator["Browser"]:
     if not CHROMIUM.exists():
         pytest.skip(f"there is no {CHROMIUM}")
     with sync_api.sync_playwright() as playwright:
+        # Pages are drawn without a GPU, beside other tests: what is waited for may take its time.
+        sync_api.expect.set_options(timeout=EXPECTED_WITHIN_MS)
         browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=CHROMIUM_ARGUMENTS)
         yield browser
         browser.close()

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import ConsoleMessage, Page
 
 START_WITHIN_S = 90.0
+HEALTHY_WITHIN_S = 20.0
 CHROMIUM = Path("/usr/bin/chromium")
 CHROMIUM_ARGUMENTS = [
     "--headless",
@@ -33,6 +34,8 @@ CHROMIUM_ARGUMENTS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+# Whose holds nobody else releases.
+OWNED = ("error", "vehicle")
 HEALTHY = {
     "battery_level": 0.9,
     "estop": False,
@@ -123,27 +126,37 @@ class Service:
         """Bring stop, signals, holds and task to where they are after a start."""
         self.request("DELETE", "/tasks/current")
         for hold in self.request("GET", "/holds")["items"]:
-            if hold["owner"] not in ("error", "vehicle"):
+            if hold["owner"] not in OWNED and not hold["owner"].startswith("reaction:"):
                 self.request("DELETE", f"/holds/{hold['owner']}")
         self.request("PUT", "/emergency_stop", {"engaged": False, "reason": "next test"})
         for signal, value in HEALTHY.items():
             self.request("PATCH", f"/mock/{signal}", {"value": value, "publishing": True})
-        end = time.monotonic() + 2.0
+        self._end_reactions()
+        end = time.monotonic() + HEALTHY_WITHIN_S
         while self.request("GET", "/system_state")["state"] != "IDLE":
             assert time.monotonic() < end, self.request("GET", "/system_state")
             time.sleep(0.02)
         self._see_all_errors()
+
+    def _end_reactions(self) -> None:
+        """Acknowledge the reactions that hold until somebody does."""
+        for item in self.request("GET", "/reactions")["items"]:
+            if item["until"] == "acknowledged" and item["state"] == "acting":
+                path = f"{self._path_of(item['part'])}/reactions/{item['reaction']}"
+                self.request("POST", f"{path}/acknowledge")
 
     def _see_all_errors(self) -> None:
         """Acknowledge what is over, and announce all errors again."""
         for error in self.request("GET", "/errors?open=true")["items"]:
             path = f"/errors/{error['error']}"
             if error["part"] is not None:
-                systems = self.request("GET", "/systems")["items"]
-                is_system = error["part"] in [system["name"] for system in systems]
-                path = f"/{'systems' if is_system else 'nodes'}/{error['part']}{path}"
+                path = f"{self._path_of(error['part'])}{path}"
             self.request("POST", f"{path}/acknowledge")
             self.request("DELETE", f"{path}/shelf")
+
+    def _path_of(self, part: str) -> str:
+        systems = [system["name"] for system in self.request("GET", "/systems")["items"]]
+        return f"/{'systems' if part in systems else 'nodes'}/{part}"
 
     def _is_ready(self) -> bool:
         try:

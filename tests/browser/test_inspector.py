@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 
 from tests.browser.robots import large_robot
 from tests.browser.station import Complaints, Service, serving
@@ -266,6 +266,23 @@ def test_on_a_phone_a_part_opens_in_place_of_the_list_and_back_returns_to_its_ro
     panel(phone).get_by_role("button", name="Back").click()
     expect(heading).to_be_hidden()
     expect(row).to_be_focused()
+
+
+def test_a_part_that_is_selected_before_its_panel_is_there_gets_the_focus_when_it_is(
+    browser: Browser, service: Service
+) -> None:
+    page = browser.new_page(viewport={"width": 360, "height": 640})
+    # It stays away until the press, as on a slow link.
+    waiting: list[Route] = []
+    page.route("**/panels.js", lambda route: waiting.append(route))
+    page.goto(service.url)
+    page.get_by_role("tab", name="Parts").click()
+    page.get_by_role("treeitem").filter(has_text="drive_base").last.click()
+    waiting[0].continue_()
+    heading = panel(page).get_by_role("heading", level=2)
+    expect(heading).to_have_text("drive_base")
+    expect(heading).to_be_focused()
+    page.close()
 
 
 def test_on_a_phone_the_gesture_for_back_closes_the_part(phone: Page, service: Service) -> None:

@@ -218,8 +218,12 @@ connection.addEventListener("frame", ({ detail }) => hear(detail));
 document.addEventListener("ph-select", ({ detail }) => {
   selected = detail;
   draw();
-  // On a slow link somebody may select a part before its panel is there.
-  loadPanels().then(() => panel.bringIntoView?.());
+  // On a slow link somebody may select a part before its panel is there: it is drawn before it can
+  // have the focus.
+  loadPanels().then(() => {
+    panel.update?.(currentView());
+    panel.bringIntoView?.();
+  });
 });
 document.addEventListener("ph-back", () => document.querySelector("ph-part-tree").focusRow());
 document.addEventListener("ph-preview", ({ detail }) => {

@@ -20,6 +20,7 @@ class HoldButton extends HTMLElement {
   #volatile = false;
   #consent = false;
   #timer = null;
+  #pressedAt = 0;
   #clearing = null;
   #clickedAt = -Infinity;
 
@@ -69,29 +70,31 @@ class HoldButton extends HTMLElement {
 
   #listen() {
     const { button } = this;
-    button.addEventListener("pointerdown", ({ button: which, pointerId }) => {
+    button.addEventListener("pointerdown", ({ button: which, pointerId, timeStamp }) => {
       if (which !== 0) return;
       // What is above may grow meanwhile: the press goes on where the button moves from under it.
       if (pointerId) button.setPointerCapture(pointerId);
-      this.#start();
+      this.#start(timeStamp);
     });
     button.addEventListener("pointermove", (event) => isBeside(button, event) && this.#letGo());
-    for (const end of ["pointerup", "pointercancel", "blur", "keyup"]) {
-      button.addEventListener(end, () => this.#letGo());
+    for (const end of ["pointercancel", "blur"]) button.addEventListener(end, () => this.#letGo());
+    for (const end of ["pointerup", "keyup"]) {
+      button.addEventListener(end, ({ timeStamp }) => this.#release(timeStamp));
     }
     for (const kind of ["keydown", "keyup"]) {
       button.addEventListener(kind, (event) => {
         if (event.key !== " " && event.key !== "Enter") return;
         event.preventDefault();
-        if (kind === "keydown" && !event.repeat) this.#start();
+        if (kind === "keydown" && !event.repeat) this.#start(event.timeStamp);
       });
     }
     button.addEventListener("click", (event) => this.#click(event));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
-  #start() {
+  #start(at) {
     this.#end();
+    this.#pressedAt = at;
     setAttribute(this, "holding", true);
     this.#consent = this.#volatile;
     this.#timer = setTimeout(() => this.#held(), HOLD_MS);
@@ -102,6 +105,12 @@ class HoldButton extends HTMLElement {
     this.#say(null);
     const detail = { volatile: this.#consent };
     this.dispatchEvent(new CustomEvent("ph-held", { bubbles: true, detail }));
+  }
+
+  /** The time of the press counts, not when a busy page came to it. */
+  #release(at) {
+    if (this.#timer !== null && at - this.#pressedAt >= HOLD_MS) this.#held();
+    else this.#letGo();
   }
 
   #letGo() {
