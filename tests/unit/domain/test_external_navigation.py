@@ -325,7 +325,7 @@ def test_a_vehicle_that_does_not_stop_has_not_arrived() -> None:
     robot.drive(3)
     robot.give(ControllerResult(GoalId(1), GoalEnd.SUCCEEDED))
     robot.drive(2)
-    assert robot.task.status is TaskPhase.RUNNING
+    assert robot.task.ended_at is None
     robot.drive(1.5)
 
     assert robot.task.status is TaskPhase.ABORTED
