@@ -21,8 +21,9 @@ from tests.support.live_robot import make_supervisor
 def test_a_robot_may_name_its_messages_as_smart_polaris_does(topic: str, type_name: str) -> None:
     interface = RosInterface(make_supervisor(), InterfaceSettings(MessageSet.GEM))
 
-    offered = (*interface.topics.values(), *interface.heard.values())
-    assert type_name in [each.type for each in offered if each.name == topic]
+    types = {name: offered.type for name, offered in interface.topics.items()}
+    types |= {name: heard.type for name, heard in interface.heard.items()}
+    assert types[topic] == type_name
 
 
 def test_each_message_of_smart_polaris_has_one_of_our_own() -> None:
