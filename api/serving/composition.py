@@ -41,6 +41,8 @@ from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.message_sets import MessageSet
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
 from service.simulation.remembering import memories_of, memory_in
@@ -101,6 +103,8 @@ class Composition:
     it is here."""
     place: Place | None = None
     """Where this computer is among those of the robot; None: it is the only one."""
+    interface: InterfaceSettings = USUAL_SETTINGS
+    """What is offered to ROS, and to clients of rosbridge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +226,7 @@ def _with_simulated(
     """
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is not False
-    if robot.ros2 != Ros2Block():
+    if robot.ros2.model_copy(update={"messages": Ros2Block().messages}) != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
     now = clock.now()
     memory = None if stores.journal is None else memory_in(stores.journal.found)
@@ -247,7 +251,9 @@ def _with_simulated(
     supervisor.sources, supervisor.link = status, link
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
-    return Composition(supervisor, limits, simulated=parts, place=place)
+    return Composition(
+        supervisor, limits, simulated=parts, place=place, interface=_interface(robot)
+    )
 
 
 def _with_ros2(
@@ -275,8 +281,15 @@ def _with_ros2(
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
     supervisor.sources, supervisor.link = status, link
     mapped = {block.topic for block in robot.ros2.signals.values()}
-    gateway = RosGateway(RosInterface(supervisor), graph, mapped)
-    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway, place=place)
+    interface = _interface(robot)
+    gateway = RosGateway(RosInterface(supervisor, interface), graph, mapped)
+    limits = ServiceLimits.of(robot.limits)
+    return Composition(supervisor, limits, gateway, place=place, interface=interface)
+
+
+def _interface(robot: RobotSettings) -> InterfaceSettings:
+    """Return what a robot file says about the interface to ROS."""
+    return InterfaceSettings(MessageSet(robot.ros2.messages))
 
 
 def _link_of(

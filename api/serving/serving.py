@@ -156,6 +156,7 @@ async def _make_server(
         access=network.access,
         limits=composition.limits,
         simulated=composition.simulated,
+        interface=composition.interface,
     )
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     await prepare(app)

@@ -171,6 +171,10 @@ class CommandBlock(SettingsBlock):
 class Ros2Block(SettingsBlock):
     """ROS 2 topics of the robot."""
 
+    messages: Literal["pilothouse_msgs", "gem_state_msgs"] = "pilothouse_msgs"
+    """Package of the messages for signals and the state of the robot. `gem_state_msgs` has the same
+    fields under the names of smart_polaris; it has to be installed. Also in effect for rosbridge
+    clients of a simulated robot, who may name either."""
     signals: dict[str, SignalTopicBlock] = Field(default_factory=dict)
     """Topics of signals by name of the signal: the five default ones and the declared ones."""
     statistics: dict[str, StatisticBlock] = Field(default_factory=dict)
