@@ -12,7 +12,7 @@ from domain.identifiers import GoalId
 from domain.timebase import Duration, seconds
 
 
-class GoalEnd(StrEnum):
+class GoalOutcome(StrEnum):
     """How a controller ended a goal."""
 
     SUCCEEDED = "succeeded"
@@ -56,7 +56,7 @@ class ControllerResult:
     """The controller has ended a goal: it does not drive any more."""
 
     goal: GoalId
-    end: GoalEnd
+    end: GoalOutcome
     reason: str = ""
 
 

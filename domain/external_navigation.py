@@ -20,7 +20,7 @@ from domain.controller import (
     ControllerResult,
     ControllerSettings,
     ControllerStatus,
-    GoalEnd,
+    GoalOutcome,
     NavigationStatus,
 )
 from domain.inputs import GoalFeedback, GoalResult
@@ -261,15 +261,15 @@ class ExternalNavigation:
             self._give_up(run, str(error), now)
 
     def _take_result(self, run: _Run, result: ControllerResult, now: Instant) -> None:
-        if result.end is GoalEnd.SUCCEEDED and run.taken_back_at is None:
+        if result.end is GoalOutcome.SUCCEEDED and run.taken_back_at is None:
             # The vehicle has to stand there in any case.
             if run.said_arrived_at is None:
                 run.said_arrived_at = now
                 self._stop(now)
             return
         words = {
-            GoalEnd.CANCELED: "somebody else canceled the goal at the controller",
-            GoalEnd.UNKNOWN: "the controller does not know the goal any more",
+            GoalOutcome.CANCELED: "somebody else canceled the goal at the controller",
+            GoalOutcome.UNKNOWN: "the controller does not know the goal any more",
         }.get(result.end, "the controller aborted the goal")
         self._end_by_itself(run, f"{words}{_why(result.reason)}", now)
 

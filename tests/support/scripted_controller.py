@@ -11,7 +11,7 @@ from domain.controller import (
     ControllerResult,
     ControllerSettings,
     ControllerStatus,
-    GoalEnd,
+    GoalOutcome,
 )
 from domain.external_navigation import ExternalNavigation
 from domain.inputs import GoalFeedback, Input
@@ -77,9 +77,9 @@ class ScriptedController:
         if not self.manners.heeds_cancel:
             return
         if self._goal is None or self._goal.goal != command.goal:
-            self._said.append(ControllerResult(command.goal, GoalEnd.UNKNOWN))
+            self._said.append(ControllerResult(command.goal, GoalOutcome.UNKNOWN))
             return
-        self._end(GoalEnd.CANCELED)
+        self._end(GoalOutcome.CANCELED)
 
     def die(self) -> None:
         """End without a word, as after `kill -9`."""
@@ -108,7 +108,7 @@ class ScriptedController:
             elif isinstance(message, GoalFeedback):
                 self._report(message)
             elif self._goal is not None:
-                end = GoalEnd.SUCCEEDED if message.succeeded else GoalEnd.ABORTED
+                end = GoalOutcome.SUCCEEDED if message.succeeded else GoalOutcome.ABORTED
                 self._end(end, message.reason)
 
     def _make(self) -> Navigation:
@@ -134,12 +134,12 @@ class ScriptedController:
             progress = share if manners.progress is None else manners.progress
             self._said.append(ControllerFeedback(goal.goal, index, progress))
         if manners.aborts_at_m is not None and told.distance_m >= manners.aborts_at_m:
-            self._end(GoalEnd.ABORTED, "an obstacle does not move")
+            self._end(GoalOutcome.ABORTED, "an obstacle does not move")
         elif manners.reaches_at_m is not None and told.distance_m >= manners.reaches_at_m:
-            self._said.append(ControllerResult(goal.goal, GoalEnd.SUCCEEDED))
+            self._said.append(ControllerResult(goal.goal, GoalOutcome.SUCCEEDED))
             manners.reaches_at_m = None
 
-    def _end(self, end: GoalEnd, reason: str = "") -> None:
+    def _end(self, end: GoalOutcome, reason: str = "") -> None:
         assert self._goal is not None
         self._said.append(ControllerResult(self._goal.goal, end, reason))
         self._goal, self._navigation = None, self._make()

@@ -18,7 +18,7 @@ from domain.controller import (
     ControllerMessage,
     ControllerResult,
     ControllerStatus,
-    GoalEnd,
+    GoalOutcome,
 )
 from domain.identifiers import GoalId
 from domain.timebase import Duration, Instant, seconds
@@ -43,7 +43,7 @@ _END_S = 0.5
 """How long the end of the service waits for the controller to take goals back, s."""
 _REJECTED, _UNKNOWN_GOAL, _TERMINATED = 1, 2, 3
 """Source: action_msgs/srv/CancelGoal."""
-_ENDS = {4: GoalEnd.SUCCEEDED, 5: GoalEnd.CANCELED, 6: GoalEnd.ABORTED}
+_ENDS = {4: GoalOutcome.SUCCEEDED, 5: GoalOutcome.CANCELED, 6: GoalOutcome.ABORTED}
 """Source: action_msgs/msg/GoalStatus."""
 _ALL_GOALS = bytes(16)
 
@@ -122,7 +122,7 @@ class NavigationClient:
         elif command.goal in self._goals:
             self._begin(self._take_back(self._goals[command.goal]), f"end of goal {command.goal}")
         else:
-            self._deliver(ControllerResult(command.goal, GoalEnd.UNKNOWN))
+            self._deliver(ControllerResult(command.goal, GoalOutcome.UNKNOWN))
 
     def _begin(self, work: Coroutine[object, object, None], name: str) -> asyncio.Task[None]:
         assert self._group is not None
@@ -158,12 +158,12 @@ class NavigationClient:
 
     def _end(self, goal: _Goal, response: Message) -> None:
         self._forget(goal)
-        end = _ENDS.get(response.status, GoalEnd.UNKNOWN)
+        end = _ENDS.get(response.status, GoalOutcome.UNKNOWN)
         why = ""
-        if end in (GoalEnd.SUCCEEDED, GoalEnd.ABORTED):
+        if end in (GoalOutcome.SUCCEEDED, GoalOutcome.ABORTED):
             why = self._type.failure(response.result)
         if why:
-            end = GoalEnd.ABORTED
+            end = GoalOutcome.ABORTED
         self._deliver(ControllerResult(goal.command.goal, end, why))
 
     async def _take_back(self, goal: _Goal) -> None:
@@ -180,7 +180,7 @@ class NavigationClient:
             log.warning("%s: the controller refuses to end a goal", self._settings.action)
         elif response.return_code in (_UNKNOWN_GOAL, _TERMINATED):
             self._forget(goal)
-            self._deliver(ControllerResult(goal.command.goal, GoalEnd.UNKNOWN))
+            self._deliver(ControllerResult(goal.command.goal, GoalOutcome.UNKNOWN))
 
     def _forget(self, goal: _Goal) -> None:
         self._goals.pop(goal.command.goal, None)

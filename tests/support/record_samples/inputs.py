@@ -19,7 +19,7 @@ from domain.controller import (
     ControllerFeedback,
     ControllerResult,
     ControllerStatus,
-    GoalEnd,
+    GoalOutcome,
     NavigationStatus,
 )
 from domain.identifiers import ChangeId, GoalId
@@ -195,8 +195,8 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
     ),
     "controller_feedback": (ControllerFeedback(goal=GoalId(5), target_index=12, progress=0.25),),
     "controller_result": (
-        ControllerResult(goal=GoalId(5), end=GoalEnd.ABORTED, reason="the battery is empty"),
-        ControllerResult(goal=GoalId(5), end=GoalEnd.SUCCEEDED),
+        ControllerResult(goal=GoalId(5), end=GoalOutcome.ABORTED, reason="the battery is empty"),
+        ControllerResult(goal=GoalId(5), end=GoalOutcome.SUCCEEDED),
     ),
     "navigation_status": (
         NavigationStatus(available=False, reason="the controller gave no feedback for 1 s"),

@@ -1,6 +1,6 @@
 """What a controller says, and the deadlines that it has without settings."""
 
-from domain.controller import ControllerSettings, GoalEnd
+from domain.controller import ControllerSettings, GoalOutcome
 from domain.timebase import seconds
 
 
@@ -13,4 +13,4 @@ def test_a_controller_has_a_second_for_what_it_does_at_once() -> None:
 
 
 def test_ends_are_written_in_records_as_words() -> None:
-    assert [str(end) for end in GoalEnd] == ["succeeded", "aborted", "canceled", "unknown"]
+    assert [str(end) for end in GoalOutcome] == ["succeeded", "aborted", "canceled", "unknown"]

@@ -11,7 +11,7 @@ from domain.controller import (
     ControllerResult,
     ControllerSettings,
     ControllerStatus,
-    GoalEnd,
+    GoalOutcome,
 )
 from domain.external_navigation import TRIES
 from domain.identifiers import GoalId
@@ -138,7 +138,7 @@ def test_the_next_goal_waits_for_the_end_of_the_one_before(driving: ControlledRo
     driving.advance(0.2)
     assert len(driving.controller.given) == 1
 
-    driving.give(ControllerResult(GoalId(1), GoalEnd.CANCELED))
+    driving.give(ControllerResult(GoalId(1), GoalOutcome.CANCELED))
     assert [goal.goal for goal in driving.controller.given] == [1, 2]
 
 
@@ -149,7 +149,7 @@ def test_a_task_that_replaces_another_waits_for_the_end_of_its_goal(
     outputs = driving.submit_task(straight())
     assert [type(c) for c in outputs.commands] == [Drive, PreemptGoal]
 
-    driving.give(ControllerResult(GoalId(1), GoalEnd.CANCELED))
+    driving.give(ControllerResult(GoalId(1), GoalOutcome.CANCELED))
     assert [goal.goal for goal in driving.controller.given] == [1, 2]
 
 
@@ -158,7 +158,7 @@ def test_a_goal_that_still_waits_is_dropped_by_a_hold(driving: ControlledRobot) 
     driving.hold()
     driving.release()
     driving.hold()
-    driving.give(ControllerResult(GoalId(1), GoalEnd.CANCELED))
+    driving.give(ControllerResult(GoalId(1), GoalOutcome.CANCELED))
 
     assert [goal.goal for goal in driving.controller.given] == [1]
 
@@ -323,7 +323,7 @@ def test_a_vehicle_that_does_not_stop_has_not_arrived() -> None:
     robot = ControlledRobot(vehicle=VehicleSettings(plant=Plant(braking_mps2=0.2)))
     robot.submit_task(straight())
     robot.drive(3)
-    robot.give(ControllerResult(GoalId(1), GoalEnd.SUCCEEDED))
+    robot.give(ControllerResult(GoalId(1), GoalOutcome.SUCCEEDED))
     robot.drive(2)
     assert robot.task.ended_at is None
     robot.drive(1.5)
@@ -342,7 +342,7 @@ def test_a_rejected_goal_aborts_the_task_with_the_reason(robot: ControlledRobot)
 
 
 def test_a_goal_that_somebody_else_canceled_aborts_the_task(driving: ControlledRobot) -> None:
-    outputs = driving.give(ControllerResult(GoalId(1), GoalEnd.CANCELED))
+    outputs = driving.give(ControllerResult(GoalId(1), GoalOutcome.CANCELED))
 
     assert isinstance(outputs.commands[0], Drive)
     assert driving.task.reason == "somebody else canceled the goal at the controller"
@@ -351,7 +351,7 @@ def test_a_goal_that_somebody_else_canceled_aborts_the_task(driving: ControlledR
 def test_what_is_said_of_another_goal_is_left_aside(driving: ControlledRobot) -> None:
     driving.give(ControllerFeedback(GoalId(7), 999, 9.0))
     driving.give(ControllerAnswer(GoalId(7), accepted=False))
-    driving.give(ControllerResult(GoalId(7), GoalEnd.ABORTED))
+    driving.give(ControllerResult(GoalId(7), GoalOutcome.ABORTED))
 
     assert driving.task.status is TaskPhase.RUNNING
 

@@ -12,7 +12,7 @@ from domain.controller import (
     ControllerMessage,
     ControllerResult,
     ControllerStatus,
-    GoalEnd,
+    GoalOutcome,
 )
 from domain.identifiers import GoalId
 from service.files.ros2_block import NavigationBlock
@@ -137,7 +137,7 @@ async def test_a_goal_is_sent_with_all_waypoints_and_its_end_is_told(ready: Worl
     await ready.clock.advance(0.1)
     assert ready.news() == [
         ControllerFeedback(GoalId(1), 5, 0.25),
-        ControllerResult(GoalId(1), GoalEnd.SUCCEEDED),
+        ControllerResult(GoalId(1), GoalOutcome.SUCCEEDED),
     ]
 
 
@@ -154,7 +154,7 @@ async def test_a_goal_that_failed_is_told_with_the_reason(ready: World, status: 
     await ready.clock.advance(0.1)
     ready.server.end(ready.server.goals[0], status, success=False, message="an obstacle")
     await ready.clock.advance(0.1)
-    assert ready.news()[1:] == [ControllerResult(GoalId(1), GoalEnd.ABORTED, "an obstacle")]
+    assert ready.news()[1:] == [ControllerResult(GoalId(1), GoalOutcome.ABORTED, "an obstacle")]
 
 
 async def test_feedback_that_comes_too_often_or_of_others_is_left_aside(ready: World) -> None:
@@ -177,7 +177,7 @@ async def test_a_goal_that_is_taken_back_ends_canceled(ready: World) -> None:
     await ready.clock.advance(0.1)
     ready.take_back()
     await ready.clock.advance(0.1)
-    assert ready.news()[1:] == [ControllerResult(GoalId(1), GoalEnd.CANCELED)]
+    assert ready.news()[1:] == [ControllerResult(GoalId(1), GoalOutcome.CANCELED)]
     assert ready.server.cancels == [ready.server.goals[0].id]
 
 
@@ -191,7 +191,7 @@ async def test_a_goal_is_taken_back_only_after_its_request_was_answered(ready: W
 
     ready.server.hold_answers(held=False)
     await ready.clock.advance(0.2)
-    assert ready.news()[-1] == ControllerResult(GoalId(1), GoalEnd.CANCELED)
+    assert ready.news()[-1] == ControllerResult(GoalId(1), GoalOutcome.CANCELED)
 
 
 @pytest.mark.parametrize("code", [2, TERMINATED])
@@ -201,9 +201,9 @@ async def test_a_goal_that_the_controller_does_not_have_is_over(ready: World, co
     ready.server.cancel_code = code
     ready.take_back()
     await ready.clock.advance(0.1)
-    assert ready.news()[1:] == [ControllerResult(GoalId(1), GoalEnd.UNKNOWN)]
+    assert ready.news()[1:] == [ControllerResult(GoalId(1), GoalOutcome.UNKNOWN)]
     ready.take_back()
-    assert ready.news() == [ControllerResult(GoalId(1), GoalEnd.UNKNOWN)]
+    assert ready.news() == [ControllerResult(GoalId(1), GoalOutcome.UNKNOWN)]
 
 
 async def test_a_refusal_to_end_a_goal_is_logged_and_ends_nothing(
