@@ -7,8 +7,9 @@ An adapter passes every fact to `deliver` on the event loop's thread. It does no
 from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
-from domain.commands import Drive, LinkCommand, NodeCommand
+from domain.commands import Drive, LinkCommand, NodeCommand, PreemptGoal, SendGoal
 from domain.computers import ComputerName, Connection
+from domain.controller import ControllerMessage
 from domain.inputs import (
     BackendStatus,
     DeviceStatus,
@@ -38,6 +39,7 @@ BackendMessage: TypeAlias = (
     | ErrorReport
     | VehicleReport
     | DriveStatus
+    | ControllerMessage
     | DeviceStatus
     | SupervisorStatus
     | PeerStops
@@ -88,6 +90,24 @@ class VehicleBackend(Adapter, Protocol):
 
         Called on the event loop's thread. A command is valid for 0.5 s: then speed 0 is commanded,
         so that the robot stops when the supervisor dies.
+        """
+        ...
+
+
+class NavigationBackend(Protocol):
+    """An external controller; `tests/conformance/test_navigation.py` specifies what is asked of it.
+
+    The adapter only carries messages; the core judges them, and every deadline. It delivers
+    `ControllerStatus` whether there is a controller, which has confirmed before that it has none of
+    our goals; of each goal one `ControllerAnswer`, `ControllerFeedback` at 25 Hz at most, and one
+    `ControllerResult`.
+    """
+
+    def send(self, command: SendGoal | PreemptGoal, /) -> None:
+        """Send a goal, or ask for its end, and return at once. Never raises.
+
+        Called on the event loop's thread. The end may be asked for several times: of a goal that
+        the controller does not have, `ControllerResult` says so.
         """
         ...
 

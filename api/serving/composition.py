@@ -27,6 +27,7 @@ from service.files.robot_file import (
     read_robot_file,
     written_for_device,
     written_out,
+    written_with_backend,
 )
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
@@ -151,11 +152,15 @@ def read_files(options: ServeOptions) -> RobotFiles:
         text = read_text_file(options.robot)
         settings = read_robot_file(text, loaded.model)
         loaded = with_signals(loaded, settings.to_signal_settings())
+        if options.backend not in (None, settings.backend):
+            text = written_with_backend(text, options.backend)
         if options.device is None:
             text = written_out(text)
         else:
             settings = settings.model_copy(update={"device": options.device})
             text = written_for_device(text, options.device)
+    if options.backend is not None:
+        settings = settings.model_copy(update={"backend": options.backend})
     try:
         share = share_of(loaded.model, settings)
     except UnknownDeviceError as error:
@@ -206,7 +211,7 @@ def compose(
         UnknownTypeError: The type of a topic in the robot file is not installed.
         UnknownFieldError: That type does not have the field that the robot file names.
     """
-    is_real = (options.backend or files.settings.backend) == "ros2"
+    is_real = files.settings.backend == "ros2"
     make = _with_ros2 if is_real else _with_simulated
     for left in files.share.left_out:
         log.warning("left to the supervisor: %s", left.words)
@@ -279,7 +284,7 @@ def _with_ros2(
     else:
         backend, status = _with_sources(files, clock, ros, (ros,), link)
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
-    supervisor.sources, supervisor.link = status, link
+    supervisor.sources, supervisor.link, supervisor.navigation = status, link, ros
     mapped = {block.topic for block in robot.ros2.signals.values()}
     interface = _interface(robot)
     gateway = RosGateway(RosInterface(supervisor, interface), graph, mapped)
@@ -343,6 +348,8 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
         named.append(topics.command.type)
     if topics.diagnostics is not None:
         named.append(DIAGNOSTICS)
+    if topics.navigation is not None:
+        named.append(topics.navigation.type)
     for type_name in named:
         if not graph.has_type(type_name):
             raise UnknownTypeError(type_name)

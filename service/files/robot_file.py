@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
+from domain.controller import ControllerSettings
 from domain.devices.settings import DeviceSettings, LeadSettings, ownership_text
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
@@ -170,6 +171,13 @@ class RobotSettings(SettingsBlock):
         """Return the settings of navigation."""
         return self.driving.to_navigation_settings()
 
+    def to_controller_settings(self) -> ControllerSettings | None:
+        """Return the deadlines of the external controller; None: the trackers on board drive."""
+        navigation = self.ros2.navigation
+        if navigation is None or self.backend != "ros2" or self.device is not None:
+            return None
+        return navigation.to_settings()
+
 
 def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
     """Read settings from YAML; scalars are read as in a model.
@@ -200,6 +208,11 @@ def written_out(text: str) -> str:
     """
     data = _plain_text(text)
     return _written(data) if data.get(INCLUDE) else text
+
+
+def written_with_backend(text: str, backend: str) -> str:
+    """Return a valid robot file as the log keeps it where the command named the backend."""
+    return _written({**_plain_text(text), "backend": backend})
 
 
 def written_for_device(text: str, device: str) -> str:
@@ -248,8 +261,8 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
             raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
     for keys, _, message in _faults(settings, model):
         raise InvalidValueError(message, _pointer(*merged.place_of(keys)))
-    # One computer simulates all of it.
-    return settings.model_copy(update={"devices": {}, "device": None})
+    # One computer simulates all of it, and the trackers on board drive.
+    return settings.model_copy(update={"devices": {}, "device": None, "backend": "simulated"})
 
 
 def _no_node(name: str, model: SmhModel) -> str:

@@ -409,6 +409,14 @@ class FakeClient:
         """
         return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
 
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Ask, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time.
+        """
+        return await self.call(make(), within_s)
+
 
 class FakeDriveOutput:
     """An output for drive commands in a `FakeGraph`; a `DriveOutput`."""

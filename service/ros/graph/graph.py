@@ -76,6 +76,7 @@ class Lane(Enum):
     PARAMETERS = "parameters"
     LIVELINESS = "liveliness"
     SENSORS = "sensors"
+    NAVIGATION = "navigation"
     GATEWAY = "gateway"
 
 
@@ -96,6 +97,20 @@ class Client(Protocol):
         Args:
             request: Its fields.
             within_s: Timeout, s.
+
+        Raises:
+            TimeoutError: There was no response in time; the fate of the request is unknown.
+        """
+        ...
+
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Send a request of thousands of fields, and return the response.
+
+        To fill and to send it takes a tenth of a second, which is spent on another thread.
+
+        Args:
+            make: Returns its fields; called on another thread.
+            within_s: Timeout once it was sent, s.
 
         Raises:
             TimeoutError: There was no response in time; the fate of the request is unknown.

@@ -415,10 +415,31 @@ class _Client:
         message = self._kind.Request()
         fill(message, request)
         await self._turnstile.wait_for_turn()
+        self._check_open()
+        return await self._response_to(self._client.call_async(message), within_s)
+
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Send a large request from another thread, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time, or the link is closed.
+            InvalidValueError: The fields do not fit the request type of the service.
+        """
+        self._check_open()
+        asked = await asyncio.to_thread(self._ask, make)
+        return await self._response_to(asked, within_s)
+
+    def _ask(self, make: Callable[[], Fields]) -> Any:  # noqa: ANN401  # a future of rclpy
+        message = self._kind.Request()
+        fill(message, make())
+        return self._client.call_async(message)
+
+    def _check_open(self) -> None:
         if self._crossing.closed:
             raise TimeoutError("the link to ROS 2 is closed")
+
+    async def _response_to(self, asked: Any, within_s: float) -> Message:  # noqa: ANN401
         response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
-        asked = self._client.call_async(message)
         # Awaiting the future of rclpy would busy-wait.
         asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
         try:
