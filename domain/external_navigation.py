@@ -338,7 +338,8 @@ class ExternalNavigation:
     def _judge_taking_back(self, run: _Run, now: Instant) -> None:
         """Ask again for the end of a goal that is not confirmed in time, and tell of it.
 
-        A controller may confirm it when the vehicle stands: time counts from when it brakes no more.
+        A controller may confirm it when the vehicle stands: time counts from when that brakes no
+        more.
         """
         state = self._vehicle.fresh_state(now)
         if state is not None and now <= run.brakes_until:
