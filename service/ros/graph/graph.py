@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
-from domain.goal_server import GoalEnd
+from domain.controller import GoalOutcome
 from domain.vehicle import DriveCommand
 
 PickedT = TypeVar("PickedT")
@@ -136,7 +136,7 @@ class AcceptedGoal(Protocol):
         """Publish feedback, and return at once."""
         ...
 
-    def end(self, end: GoalEnd, result: Fields) -> None:
+    def end(self, end: GoalOutcome, result: Fields) -> None:
         """End the goal with a result, and return at once; call it once.
 
         `CANCELED` is for a goal whose client asked for that.

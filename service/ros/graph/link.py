@@ -30,9 +30,7 @@ from rclpy.qos import (
 )
 from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
-from rosidl_generator_py.import_type_support_impl import (
-    UnsupportedTypeSupport,
-)
+from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
 from domain.vehicle import DriveCommand
 from service.ros.graph.action_goals import ActionGoals
@@ -69,6 +67,8 @@ _SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
 # Each event handler slows down every wait of a lane.
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+_GOALS = {True: GoalResponse.ACCEPT, False: GoalResponse.REJECT}
+_CANCELS = {True: CancelResponse.ACCEPT, False: CancelResponse.REJECT}
 _LIVELINESS_DEPTH = 8
 _ARRIVALS_DEPTH = 5
 _LOOK_S = 1.0
@@ -324,25 +324,16 @@ class _Node:
         """Offer an action while the link is open."""
         kind, link = _find_type(type_name), self._link
         goals = ActionGoals(link.crossing, link.sender, action, kind, handler, self._spinner.do)
-
-        def judge(request: Message) -> GoalResponse:
-            return GoalResponse.ACCEPT if goals.judge(request) else GoalResponse.REJECT
-
-        def cancel(handle: Any) -> CancelResponse:  # noqa: ANN401
-            goals.cancel(handle)
-            return CancelResponse.ACCEPT
-
-        goals.attach(
-            ActionServer(
-                self._node,
-                kind,
-                action,
-                _nothing,
-                goal_callback=judge,
-                handle_accepted_callback=goals.accept,
-                cancel_callback=cancel,
-            )
+        server = ActionServer(
+            self._node,
+            kind,
+            action,
+            _nothing,
+            goal_callback=lambda goal: _GOALS[goals.judge(goal)],
+            handle_accepted_callback=goals.accept,
+            cancel_callback=lambda handle: _CANCELS[goals.cancel(handle)],
         )
+        goals.attach(server)
 
 
 class _ArrivalWatch:
