@@ -164,7 +164,8 @@ def read_files(options: ServeOptions) -> RobotFiles:
     try:
         share = share_of(loaded.model, settings)
     except UnknownDeviceError as error:
-        raise MisuseError(f"{options.robot}: {error}") from error
+        known = error.hint or "it has no block `devices`"
+        raise MisuseError(f"{options.robot}: {error}; {known}") from error
     name = robot_name(settings.name, model)
     if settings.device is not None:
         name = f"{name}-{settings.device}"
