@@ -84,10 +84,37 @@ class Runner:
             time.sleep(0.05)
         raise AssertionError(f"it is not ready:\n{self.said()}")
 
+    def wait_for_nodes(self) -> None:
+        """Wait until the service hears all nodes.
+
+        Raises:
+            AssertionError: It does not in time.
+        """
+        deadline = time.monotonic() + PATIENCE_S
+        while time.monotonic() < deadline:
+            nodes = httpx.get(f"{self.url}/nodes").json()["items"]
+            if all(node["reachable"] for node in nodes):
+                return
+            time.sleep(0.1)
+        raise AssertionError(f"nodes are missing:\n{self.said()}")
+
     def ended_by(self, number: signal.Signals) -> int:
         """Send a signal to the runner alone; return its exit code."""
         self._process.send_signal(number)
+        return self.ended()
+
+    def ended(self) -> int:
+        """Wait for the end of the runner; return its exit code."""
         return self._process.wait(PATIENCE_S)
+
+    def kill_one(self, argument: str) -> None:
+        """Kill the one process that was started by the runner with such a last argument."""
+        (pid,) = (
+            pid
+            for pid in self.left_behind()
+            if Path(f"/proc/{pid}/cmdline").read_text().rstrip("\0").endswith(argument)
+        )
+        os.kill(pid, signal.SIGKILL)
 
     def left_behind(self) -> list[int]:
         """Return the processes of its session, to which all belong that it started."""
