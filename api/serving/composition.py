@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+from api.app import make_worker
 from api.distribution import installed_version
 from api.http.limits import ServiceLimits
 from api.serving.computers import make_link
@@ -31,6 +32,7 @@ from service.files.robot_file import (
 )
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
+from service.files.waypoint_folder import WaypointFolder
 from service.keeper import NO_STORES, Stores
 from service.link.device_end import DeviceEnd
 from service.link.place import Place, place_in
@@ -57,6 +59,7 @@ from service.storage.sqlite.journal import SqliteJournal
 from service.storage.sqlite.opening import StoreSettings
 from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
+from service.worker import Worker
 
 log = logging.getLogger(__name__)
 
@@ -106,6 +109,8 @@ class Composition:
     """Where this computer is among those of the robot; None: it is the only one."""
     interface: InterfaceSettings = USUAL_SETTINGS
     """What is offered to ROS, and to clients of rosbridge."""
+    worker: Worker | None = None
+    """Does jobs of the gateway, and may do others; None: there is no gateway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,7 +263,7 @@ def _with_simulated(
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
     return Composition(
-        supervisor, limits, simulated=parts, place=place, interface=_interface(robot)
+        supervisor, limits, simulated=parts, place=place, interface=_interface(options, robot)
     )
 
 
@@ -287,15 +292,21 @@ def _with_ros2(
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
     supervisor.sources, supervisor.link, supervisor.navigation = status, link, ros
     mapped = {block.topic for block in robot.ros2.signals.values()}
-    interface = _interface(robot)
-    gateway = RosGateway(RosInterface(supervisor, interface), graph, mapped)
+    interface, worker = _interface(options, robot), make_worker()
+    gateway = RosGateway(RosInterface(supervisor, interface, worker), graph, mapped)
     limits = ServiceLimits.of(robot.limits)
-    return Composition(supervisor, limits, gateway, place=place, interface=interface)
+    return Composition(supervisor, limits, gateway, place=place, interface=interface, worker=worker)
 
 
-def _interface(robot: RobotSettings) -> InterfaceSettings:
+def _interface(options: ServeOptions, robot: RobotSettings) -> InterfaceSettings:
     """Return what a robot file says about the interface to ROS."""
-    return InterfaceSettings(MessageSet(robot.ros2.messages))
+    messages = MessageSet(robot.ros2.messages)
+    if options.robot is None or robot.tasks is None:
+        return InterfaceSettings(messages)
+    folder = options.robot.parent / robot.tasks.folder
+    if not folder.is_dir():
+        log.warning("tasks.folder: there is no folder %s; /serve_waypoints finds no file", folder)
+    return InterfaceSettings(messages, WaypointFolder(folder))
 
 
 def _link_of(

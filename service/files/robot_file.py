@@ -26,7 +26,7 @@ from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
 from service.files.device_faults import faults_of_devices
 from service.files.devices_block import DeviceName, DevicesBlock, device_settings
-from service.files.driving_block import DrivingBlock, StartTaskBlock
+from service.files.driving_block import DrivingBlock, StartTaskBlock, TasksBlock
 from service.files.includes import (
     INCLUDE,
     MAX_INCLUDED,
@@ -107,6 +107,9 @@ class RobotSettings(SettingsBlock):
     there are none. Without effect in simulations."""
     link: LinkBlock = LinkBlock()
     """How these computers reach each other. Without effect in simulations."""
+    tasks: TasksBlock | None = None
+    """Tasks that clients begin by the name of a waypoint file. Default: they cannot. Without effect
+    in simulations, which do not read files."""
     start_task: StartTaskBlock | None = None
     """A task that is submitted when the service starts. Not allowed in simulations, which do not
     read files."""

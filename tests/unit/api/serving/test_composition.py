@@ -88,6 +88,22 @@ def test_a_simulated_robot_may_name_its_messages_as_smart_polaris_does(
     assert caplog.records == []
 
 
+def test_the_folder_of_waypoint_files_is_beside_the_robot_file(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text("tasks: {folder: tracks}\n")
+
+    folder = composed(ServeOptions(robot=robot)).interface.folder
+    assert folder is not None
+    assert folder.path == robot.parent / "tracks"
+    assert "there is no folder" in caplog.text
+
+    caplog.clear()
+    folder.path.mkdir()
+    composed(ServeOptions(robot=robot))
+    assert caplog.records == []
+
+
 def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:
     (robot.parent / "path.csv").write_text("0,0,0\n")
     robot.write_text("start_task: {file: path.csv}\n")
