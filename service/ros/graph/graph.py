@@ -70,6 +70,7 @@ class Lane(Enum):
     TRANSITIONS = "transitions"
     PARAMETERS = "parameters"
     LIVELINESS = "liveliness"
+    TARGETS = "targets"
     SENSORS = "sensors"
     GATEWAY = "gateway"
 
