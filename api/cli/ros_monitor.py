@@ -18,8 +18,8 @@ from api.cli.robot_files import read_robot_files
 from api.client.outcomes import NoAnswerError, Outcome
 from api.http.part_text import part_text
 from api.http.schemas.base import timestamp
+from api.serving.joining import join_graph
 from api.serving.misuse import MisuseError
-from api.serving.ros_graph import join_graph
 from domain.parts.system_model import SmhModel
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock, MonotonicClock

@@ -4,7 +4,6 @@ import logging
 import os
 import secrets
 from dataclasses import dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -12,8 +11,8 @@ from api.distribution import installed_version
 from api.http.limits import ServiceLimits
 from api.serving.computers import make_link
 from api.serving.data_folder import MEMORY, data_folder, robot_name
+from api.serving.joining import join_graph
 from api.serving.misuse import MisuseError
-from api.serving.ros_graph import join_graph
 from api.simulation.simulation_job import SimulatedParts
 from domain.errors import UnknownDeviceError
 from domain.simulation.mock_signals import MockSignals
@@ -22,7 +21,7 @@ from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.computer_share import ComputerShare, share_of
-from service.files.model_file import LoadedModel, load_model, with_signals
+from service.files.model_file import EXAMPLE, LoadedModel, load_model, with_signals
 from service.files.robot_file import (
     RobotSettings,
     read_robot_file,
@@ -42,6 +41,8 @@ from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.message_sets import MessageSet
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
 from service.simulation.remembering import memories_of, memory_in
@@ -59,8 +60,6 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 BackendName: TypeAlias = Literal["simulated", "ros2"]
-
-EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +103,8 @@ class Composition:
     it is here."""
     place: Place | None = None
     """Where this computer is among those of the robot; None: it is the only one."""
+    interface: InterfaceSettings = USUAL_SETTINGS
+    """What is offered to ROS, and to clients of rosbridge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +226,7 @@ def _with_simulated(
     """
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is not False
-    if robot.ros2 != Ros2Block():
+    if robot.ros2.model_copy(update={"messages": Ros2Block().messages}) != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
     now = clock.now()
     memory = None if stores.journal is None else memory_in(stores.journal.found)
@@ -250,7 +251,9 @@ def _with_simulated(
     supervisor.sources, supervisor.link = status, link
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
-    return Composition(supervisor, limits, simulated=parts, place=place)
+    return Composition(
+        supervisor, limits, simulated=parts, place=place, interface=_interface(robot)
+    )
 
 
 def _with_ros2(
@@ -278,8 +281,15 @@ def _with_ros2(
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
     supervisor.sources, supervisor.link = status, link
     mapped = {block.topic for block in robot.ros2.signals.values()}
-    gateway = RosGateway(RosInterface(supervisor), graph, mapped)
-    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway, place=place)
+    interface = _interface(robot)
+    gateway = RosGateway(RosInterface(supervisor, interface), graph, mapped)
+    limits = ServiceLimits.of(robot.limits)
+    return Composition(supervisor, limits, gateway, place=place, interface=interface)
+
+
+def _interface(robot: RobotSettings) -> InterfaceSettings:
+    """Return what a robot file says about the interface to ROS."""
+    return InterfaceSettings(MessageSet(robot.ros2.messages))
 
 
 def _link_of(

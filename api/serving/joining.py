@@ -1,4 +1,4 @@
-"""Joins the ROS 2 graph, where there is ROS 2; else says what to do."""
+"""Joins the ROS 2 graph, or says why this machine cannot."""
 
 from api.serving.misuse import MisuseError
 from service.ros.graph.graph import RosGraph
