@@ -127,6 +127,11 @@ class Supervisor:
         return self._loaded.model
 
     @property
+    def model_name(self) -> str:
+        """Return the name of the model file; empty: not known."""
+        return self._loaded.name
+
+    @property
     def model_text(self) -> str:
         """Return the model file as it was read."""
         return self._loaded.text

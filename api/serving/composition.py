@@ -138,7 +138,7 @@ class RobotFiles:
         """Return the part of the model that this computer runs."""
         if not self.is_device:
             return self.loaded
-        return LoadedModel(self.share.model, (), self.loaded.text)
+        return LoadedModel(self.share.model, (), self.loaded.text, self.loaded.name)
 
 
 def read_files(options: ServeOptions) -> RobotFiles:
