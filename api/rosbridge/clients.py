@@ -13,6 +13,7 @@ from fastapi.requests import HTTPConnection
 from api.rosbridge.bridge import Bridge
 from api.streaming.stream_server import StreamServer
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.settings import InterfaceSettings
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -88,16 +89,17 @@ class RosbridgeClients:
 
 
 def make_rosbridge_clients(
-    supervisor: Supervisor, calls_per_s: int, lobby: StreamServer
+    supervisor: Supervisor, settings: InterfaceSettings, calls_per_s: int, lobby: StreamServer
 ) -> RosbridgeClients:
     """Return the rosbridge clients of a robot.
 
     Args:
         supervisor: Of the robot.
+        settings: What is offered to them.
         calls_per_s: Service calls per second that one client address may make.
         lobby: As for `RosbridgeClients`.
     """
-    return RosbridgeClients(partial(_make_bridge, supervisor, calls_per_s), lobby)
+    return RosbridgeClients(partial(_make_bridge, supervisor, settings, calls_per_s), lobby)
 
 
 def rosbridge_clients(app: FastAPI) -> RosbridgeClients:
@@ -106,9 +108,9 @@ def rosbridge_clients(app: FastAPI) -> RosbridgeClients:
     return clients
 
 
-def _make_bridge(supervisor: Supervisor, calls_per_s: int) -> Bridge:
+def _make_bridge(supervisor: Supervisor, settings: InterfaceSettings, calls_per_s: int) -> Bridge:
     return Bridge(
-        RosInterface(supervisor),
+        RosInterface(supervisor, settings),
         supervisor.frames,
         supervisor.clock,
         calls_per_s,

@@ -4,7 +4,6 @@ import logging
 import os
 import secrets
 from dataclasses import dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -12,6 +11,7 @@ from api.distribution import installed_version
 from api.http.limits import ServiceLimits
 from api.serving.computers import make_link
 from api.serving.data_folder import MEMORY, data_folder, robot_name
+from api.serving.joining import join_graph
 from api.serving.misuse import MisuseError
 from api.simulation.simulation_job import SimulatedParts
 from domain.errors import UnknownDeviceError
@@ -21,7 +21,7 @@ from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.computer_share import ComputerShare, share_of
-from service.files.model_file import LoadedModel, load_model, with_signals
+from service.files.model_file import EXAMPLE, LoadedModel, load_model, with_signals
 from service.files.robot_file import (
     RobotSettings,
     read_robot_file,
@@ -42,6 +42,8 @@ from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.message_sets import MessageSet
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
 from service.simulation.remembering import memories_of, memory_in
@@ -59,14 +61,6 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 BackendName: TypeAlias = Literal["simulated", "ros2"]
-
-EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
-
-_NO_ROS = (
-    "source the setup.bash of your ROS 2 distribution before you start the service, and run it with"
-    " the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
-    " pip install 'pilothouse[ros2]'"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +104,8 @@ class Composition:
     it is here."""
     place: Place | None = None
     """Where this computer is among those of the robot; None: it is the only one."""
+    interface: InterfaceSettings = USUAL_SETTINGS
+    """What is offered to ROS, and to clients of rosbridge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +227,7 @@ def _with_simulated(
     """
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is not False
-    if robot.ros2 != Ros2Block():
+    if robot.ros2.model_copy(update={"messages": Ros2Block().messages}) != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
     if any(node.process is not None for node in robot.nodes.values()):
         log.warning("`process` of the robot file has no effect: the nodes are simulated")
@@ -259,7 +255,9 @@ def _with_simulated(
     supervisor.live_faults = backend
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
-    return Composition(supervisor, limits, simulated=parts, place=place)
+    return Composition(
+        supervisor, limits, simulated=parts, place=place, interface=_interface(robot)
+    )
 
 
 def _with_ros2(
@@ -269,7 +267,7 @@ def _with_ros2(
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is True
     now = clock.now()
-    graph = _join_graph()
+    graph = join_graph()
     _require_types(graph, robot.ros2)
     ros = Ros2Backend(share.local_model, robot, graph, clock)
     onboard = make_onboard(files.loaded.model, files.settings, now)
@@ -288,8 +286,15 @@ def _with_ros2(
     supervisor.sources, supervisor.link = status, link
     supervisor.processes = make_processes(robot, options.robot)
     mapped = {block.topic for block in robot.ros2.signals.values()}
-    gateway = RosGateway(RosInterface(supervisor), graph, mapped)
-    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway, place=place)
+    interface = _interface(robot)
+    gateway = RosGateway(RosInterface(supervisor, interface), graph, mapped)
+    limits = ServiceLimits.of(robot.limits)
+    return Composition(supervisor, limits, gateway, place=place, interface=interface)
+
+
+def _interface(robot: RobotSettings) -> InterfaceSettings:
+    """Return what a robot file says about the interface to ROS."""
+    return InterfaceSettings(MessageSet(robot.ros2.messages))
 
 
 def _link_of(
@@ -348,20 +353,3 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
             raise UnknownTypeError(type_name)
     for signal in topics.signals.values():
         graph.require_field(signal.type, signal.path or ())
-
-
-def _join_graph() -> RosGraph:
-    """Join the ROS 2 graph.
-
-    Raises:
-        MisuseError: This Python cannot import rclpy, or the middleware does not start.
-    """
-    try:
-        # Imported here, since ROS 2 is not installed on every machine.
-        from service.ros.graph.link import RosLink
-    except ImportError as error:
-        raise MisuseError(f"ROS 2 is not available: {error}. What to do: {_NO_ROS}") from error
-    try:
-        return RosLink()
-    except RuntimeError as error:
-        raise MisuseError(f"ROS 2 does not start: {error}") from error

@@ -175,6 +175,15 @@ class Pursuit:
                 return step
         return None
 
+    def end(self, outcome: StepStatus, error: str | None, now: Instant) -> None:
+        """End the pursuit; unless it succeeded, the step that would be next ends like it."""
+        self.outcome, self.error = outcome, error
+        if outcome is not StepStatus.SUCCEEDED:
+            step = self.next_step()
+            if step is not None and not any(s.status is outcome for s in self.steps):
+                step.end(outcome, now, error)
+            self.drop_pending(StepStatus.CANCELED, now)
+
     def drop_pending(self, status: StepStatus, now: Instant) -> None:
         """End all pending steps."""
         for step in self.steps:

@@ -98,7 +98,7 @@ class RobotSettings(SettingsBlock):
     limits: LimitsBlock = LimitsBlock()
     """Limits on what clients may request."""
     ros2: Ros2Block = Ros2Block()
-    """ROS 2 topics of the robot. Without effect for a simulated robot."""
+    """ROS 2 topics of the robot. Without effect for a simulated robot, but for `messages`."""
     device: DeviceName | None = None
     """The device that this file is read for. `pilothouse device NAME` sets it in its record, so
     that the record can be replayed; leave it out of a file that all computers share."""

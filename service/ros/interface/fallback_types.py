@@ -1,8 +1,8 @@
 """Standard types in place of message types that are rarely installed.
 
-`system_modes_msgs` and `gem_state_msgs` are in no ROS 2 distribution. If one is not installed, its
-services and topics are offered with types that every installation has. A mode is then represented
-as a state with a label such as `active.FAST`.
+`system_modes_msgs` and the packages of `message_sets` are in no ROS 2 distribution. If one is not
+installed, its services and topics are offered with types that every installation has. A mode is
+then represented as a state with a label such as `active.FAST`.
 """
 
 from collections.abc import Callable, Mapping
@@ -15,6 +15,7 @@ from domain.snapshot import SystemState, TaskStatus
 from domain.state_and_mode import ModeName, StateAndMode
 from service.ros.interface.diagnostics import Level, status
 from service.ros.interface.endpoints import Fields
+from service.ros.interface.message_sets import MessageSet, type_in
 from service.ros.interface.services import UNKNOWN_MODE
 
 Convert: TypeAlias = Callable[[Fields], Fields]
@@ -125,11 +126,10 @@ TOPIC_FALLBACKS: Mapping[str, TopicFallback] = {
     "system_modes_msgs/msg/ModeEvent": TopicFallback(
         "lifecycle_msgs/msg/TransitionEvent", _mode_event
     ),
-    "gem_state_msgs/msg/SystemStateStamped": TopicFallback(
-        "diagnostic_msgs/msg/DiagnosticStatus", _system_state
-    ),
-    "gem_state_msgs/msg/TaskPlannerStatus": TopicFallback(
-        "diagnostic_msgs/msg/DiagnosticStatus", _task_status
-    ),
+    **{
+        type_in(messages, name): TopicFallback("diagnostic_msgs/msg/DiagnosticStatus", convert)
+        for messages in MessageSet
+        for name, convert in (("SystemState", _system_state), ("TaskStatus", _task_status))
+    },
 }
 """By the native type."""

@@ -21,6 +21,7 @@ from service.ros.interface.part_topics import PartTopics
 from service.ros.interface.reading_topics import reading_topics
 from service.ros.interface.robot_topics import RobotTopics
 from service.ros.interface.services import LifecycleServices, ModeServices, robot_services
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -34,11 +35,19 @@ produces events faster than a fixed small number per pass can handle."""
 class RosInterface:
     """Services and topics of all parts and of the robot, and the subscribed topics."""
 
-    def __init__(self, supervisor: Supervisor) -> None:
+    def __init__(
+        self, supervisor: Supervisor, settings: InterfaceSettings = USUAL_SETTINGS
+    ) -> None:
+        """Prepare.
+
+        Args:
+            supervisor: Of the robot.
+            settings: Of the robot file.
+        """
         self._supervisor = supervisor
         self._listeners = Listeners()
         self._part_topics = PartTopics(supervisor, self._listeners)
-        self._robot_topics = RobotTopics(supervisor, self._listeners)
+        self._robot_topics = RobotTopics(supervisor, self._listeners, settings.messages)
         parts = supervisor.model.parts
         services = chain(
             *(LifecycleServices(supervisor, part).offered() for part in parts),
@@ -53,7 +62,7 @@ class RosInterface:
         """By full name."""
         self.topics: Mapping[str, OfferedTopic] = {topic.name: topic for topic in topics}
         """By full name."""
-        heard = (*reading_topics(supervisor), checkpoint_topic(supervisor))
+        heard = (*reading_topics(supervisor, settings.messages), checkpoint_topic(supervisor))
         self.heard: Mapping[str, SubscribedTopic] = {topic.name: topic for topic in heard}
         """By full name."""
 

@@ -12,6 +12,7 @@ from service.files.robot_file import RobotSettings, read_robot_file
 from service.link.supervisor_end import SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
+from service.ros.interface.message_sets import MessageSet
 from service.start_task import StartTaskError
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph
@@ -76,6 +77,15 @@ def test_the_settings_of_a_robot_file_reach_the_core_and_the_service(robot: Path
     signal = composition.supervisor.core.signal("battery_level")
     assert signal.settings["threshold"] == 0.3
     assert composition.limits.stream_clients == 3
+
+
+def test_a_simulated_robot_may_name_its_messages_as_smart_polaris_does(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text("ros2: {messages: gem_state_msgs}\n")
+
+    assert composed(ServeOptions(robot=robot)).interface.messages is MessageSet.GEM
+    assert caplog.records == []
 
 
 def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:

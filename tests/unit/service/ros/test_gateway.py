@@ -23,13 +23,13 @@ NOT_BUILT = (
     "system_modes_msgs/srv/GetMode",
     "system_modes_msgs/srv/GetAvailableModes",
     "system_modes_msgs/msg/ModeEvent",
-    "gem_state_msgs/msg/SystemStateStamped",
-    "gem_state_msgs/msg/TaskPlannerStatus",
-    "gem_state_msgs/msg/BatteryLevelStamped",
-    "gem_state_msgs/msg/EstopStamped",
-    "gem_state_msgs/msg/GpsAccuracyStamped",
-    "gem_state_msgs/msg/SignalStrengthStamped",
-    "gem_state_msgs/msg/TemperatureStamped",
+    "pilothouse_msgs/msg/SystemState",
+    "pilothouse_msgs/msg/TaskStatus",
+    "pilothouse_msgs/msg/BatteryLevel",
+    "pilothouse_msgs/msg/EmergencyStop",
+    "pilothouse_msgs/msg/GpsAccuracy",
+    "pilothouse_msgs/msg/SignalStrength",
+    "pilothouse_msgs/msg/Temperature",
 )
 """What no distribution of ROS 2 has."""
 
@@ -103,8 +103,8 @@ def test_where_the_types_are_installed_they_are_used() -> None:
 
     assert types["/actuation/change_mode"] == "system_modes_msgs/srv/ChangeMode"
     assert types["/drive_base/mode_event"] == "system_modes_msgs/msg/ModeEvent"
-    assert types["/system_state"] == "gem_state_msgs/msg/SystemStateStamped"
-    assert types["/estop"] == "gem_state_msgs/msg/EstopStamped"
+    assert types["/system_state"] == "pilothouse_msgs/msg/SystemState"
+    assert types["/estop"] == "pilothouse_msgs/msg/EmergencyStop"
 
 
 def test_where_they_are_not_others_stand_in_and_nothing_else_is_heard() -> None:
@@ -141,7 +141,7 @@ def test_what_has_no_type_at_all_is_left_out_and_said_once(
     assert record.levelno == logging.WARNING
     assert record.getMessage() == (
         "not offered in ROS 2, since these types are not installed: "
-        "gem_state_msgs/msg/SystemStateStamped, gem_state_msgs/msg/TaskPlannerStatus, "
+        "pilothouse_msgs/msg/SystemState, pilothouse_msgs/msg/TaskStatus, "
         "std_srvs/srv/Empty"
     )
 
