@@ -39,6 +39,7 @@ from service.link.place import Place, place_in
 from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ports import NodeBackend, RobotBackend, SignalSource
+from service.processes.from_settings import make_processes
 from service.ros.backend.backend import Ros2Backend
 from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
@@ -239,6 +240,8 @@ def _with_simulated(
     mocked = options.mock_signals or robot.mock is not False
     if robot.ros2.model_copy(update={"messages": Ros2Block().messages}) != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
+    if any(node.process is not None for node in robot.nodes.values()):
+        log.warning("`process` of the robot file has no effect: the nodes are simulated")
     now = clock.now()
     memory = None if stores.journal is None else memory_in(stores.journal.found)
     simulated = make_simulated_robot(
@@ -260,6 +263,7 @@ def _with_simulated(
         files.own_part, onboard, clock, whole, backend.readings, what, stores=stores
     )
     supervisor.sources, supervisor.link = status, link
+    supervisor.live_faults = backend
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
     return Composition(
@@ -291,6 +295,7 @@ def _with_ros2(
         backend, status = _with_sources(files, clock, ros, (ros,), link)
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
     supervisor.sources, supervisor.link, supervisor.navigation = status, link, ros
+    supervisor.processes = make_processes(robot, options.robot)
     mapped = {block.topic for block in robot.ros2.signals.values()}
     interface, worker = _interface(options, robot), make_worker()
     gateway = RosGateway(RosInterface(supervisor, interface, worker), graph, mapped)
