@@ -20,6 +20,7 @@ from domain.parts.system_model import SmhModel
 from domain.paths.approach import ApproachLimits
 from domain.supervision import Supervision
 from domain.timebase import Duration, seconds
+from domain.vehicle import DEFAULT_FRAME
 from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
 from service.checkpoint import checkpoint_of
@@ -55,6 +56,9 @@ class Supervisor:
 
     link: ComputersLink | None = None
     """The other computers of the robot, set by who makes it; None: there are none."""
+
+    frame_id = DEFAULT_FRAME
+    """Coordinate frame of poses and waypoints, as ROS names it; set by who makes it."""
 
     def __init__(
         self,

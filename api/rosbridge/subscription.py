@@ -16,6 +16,8 @@ _SNAPSHOTS = frozenset(
         "diagnostic_msgs/msg/DiagnosticArray",
         "gem_state_msgs/msg/SystemStateStamped",
         "gem_state_msgs/msg/TaskPlannerStatus",
+        "nav_msgs/msg/Path",
+        "visualization_msgs/msg/MarkerArray",
     }
 )
 """Types whose newest message replaces older ones: a slow client gets only the newest."""

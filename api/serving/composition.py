@@ -253,6 +253,7 @@ def _with_simulated(
         files.own_part, onboard, clock, whole, backend.readings, what, stores=stores
     )
     supervisor.sources, supervisor.link = status, link
+    supervisor.frame_id = robot.vehicle.frame_id
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts, place=place)
@@ -282,8 +283,9 @@ def _with_ros2(
         backend, status = _with_sources(files, clock, ros, (ros,), link)
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
     supervisor.sources, supervisor.link = status, link
+    supervisor.frame_id = robot.vehicle.frame_id
     mapped = {block.topic for block in robot.ros2.signals.values()}
-    gateway = RosGateway(RosInterface(supervisor), graph, mapped)
+    gateway = RosGateway(RosInterface(supervisor), graph, clock, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway, place=place)
 
 

@@ -162,6 +162,20 @@ class FakeGraph:
         """Return what was published on a topic, by whomever."""
         return self._published[topic]
 
+    def hear(self, topic: str) -> list[Message]:
+        """Let somebody subscribe to a topic; what is returned grows with each message."""
+        heard: list[Message] = []
+        self._listen(topic, Qos.LATCHED, heard.append)
+        return heard
+
+    def leave(self, topic: str) -> None:
+        """Let nobody listen to a topic any more."""
+        self._listeners.pop(topic, None)
+
+    def is_heard(self, topic: str) -> bool:
+        """Tell whether anybody listens to a topic."""
+        return bool(self._listeners.get(topic))
+
     def set_alive(self, topic: str, alive: bool) -> None:
         """Let a topic have one more publisher that lives, or none any more; it is heard at once."""
         if not alive and topic not in self._alive:
@@ -412,3 +426,7 @@ class FakePublisher:
     def publish(self, message: Fields) -> None:
         """Send a message."""
         self._graph._publish(self._topic, message, self._latched)  # noqa: SLF001
+
+    def has_subscribers(self) -> bool:
+        """Tell whether anybody in the graph listens to the topic."""
+        return self._graph.is_heard(self._topic)

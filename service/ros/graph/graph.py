@@ -108,6 +108,10 @@ class Publisher(Protocol):
         """
         ...
 
+    def has_subscribers(self) -> bool:
+        """Tell whether the graph knows a subscription that the messages reach."""
+        ...
+
 
 class DriveOutput(Protocol):
     """Publishes drive commands.

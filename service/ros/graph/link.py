@@ -431,6 +431,10 @@ class _Publisher:
         else:
             self._sender.send(self._topic, self._send, message)
 
+    def has_subscribers(self) -> bool:
+        """Tell whether the graph knows a subscription."""
+        return not self._crossing.closed and self._publisher.get_subscription_count() > 0
+
     def _send(self, message: Fields) -> None:
         filled = self._kind()
         fill(filled, message)
