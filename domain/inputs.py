@@ -8,6 +8,7 @@ from domain.actor import NOBODY, Actor
 from domain.commands import NodeCommand
 from domain.computers import ComputerName, DeviceState, Incarnation, PeerStop, Session, StopId
 from domain.findings import Fact
+from domain.graph_terms import GraphFault
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
@@ -458,6 +459,7 @@ Input: TypeAlias = (
     | DriveStatus
     | BackendStatus
     | StorageStatus
+    | GraphFault
     | ReportBacklog
     | GoalFeedback
     | GoalResult

@@ -9,6 +9,7 @@ from typing import Protocol, TypeAlias
 
 from domain.commands import Drive, LinkCommand, NodeCommand
 from domain.computers import ComputerName, Connection
+from domain.graph_terms import GraphFault
 from domain.inputs import (
     BackendStatus,
     DeviceStatus,
@@ -38,6 +39,7 @@ BackendMessage: TypeAlias = (
     | ErrorReport
     | VehicleReport
     | DriveStatus
+    | GraphFault
     | DeviceStatus
     | SupervisorStatus
     | PeerStops

@@ -13,6 +13,7 @@ from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 from domain.errors import InvalidValueError
+from domain.graph_terms import GraphFault
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds, to_seconds
 from domain.vehicle import DriveCommand
 from service.clock import since_epoch
@@ -105,6 +106,8 @@ class FakeGraph:
         self.drive_trouble = ""
         """Why new outputs for drive commands do not work at first; empty: they work."""
         """Every output for drive commands."""
+        self.faults: list[GraphFault] = []
+        """What is wrong in the graph."""
         self.closed = False
         self._published: defaultdict[str, list[Fields]] = defaultdict(list)
         self._latched: dict[str, Fields] = {}
@@ -138,6 +141,10 @@ class FakeGraph:
         output = FakeDriveOutput(self, topic, type_name, wheelbase_m)
         self.drive_outputs.append(output)
         return output
+
+    async def look(self) -> Sequence[GraphFault]:
+        """Return what the test set in `faults`."""
+        return tuple(self.faults)
 
     async def wait_failed(self) -> None:
         """Wait until the test calls `fail`."""

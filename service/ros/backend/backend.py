@@ -10,6 +10,7 @@ from service.files.robot_file import RobotSettings
 from service.ports import Deliver
 from service.ros.backend.delivery import Delivery
 from service.ros.backend.diagnostics import ReportedDiagnostics
+from service.ros.backend.graph_watch import GraphWatch
 from service.ros.backend.nodes import RosNodes
 from service.ros.backend.signals import SignalTopics
 from service.ros.backend.topic_statistics import TopicStatistics
@@ -49,6 +50,7 @@ class Ros2Backend:
         self._signals = SignalTopics(robot, graph, clock)
         self._statistics = TopicStatistics(robot, graph, clock)
         self._diagnostics = ReportedDiagnostics(robot.ros2.diagnostics, graph)
+        self._watch = GraphWatch(graph, clock)
         limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
@@ -74,6 +76,7 @@ class Ros2Backend:
                 group.create_task(self._nodes.run(), name="nodes")
                 group.create_task(self._vehicle.run(), name="vehicle")
                 group.create_task(self._statistics.run(hear), name="statistics of topics")
+                group.create_task(self._watch.run(hear), name="faults of the graph")
                 await self._delivery.run(deliver)
         finally:
             await self._graph.close()

@@ -8,6 +8,7 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
+from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
 
 PickedT = TypeVar("PickedT")
@@ -263,6 +264,14 @@ class RosGraph(Protocol):
 
         Raises:
             UnknownTypeError: The type is not installed.
+        """
+        ...
+
+    async def look(self) -> Sequence[GraphFault]:
+        """Look at some of our topics, and return what is known to be wrong in the graph now.
+
+        Each call looks at other topics, so that none is looked at for long. A process that was
+        killed stays in the graph for some 20 s.
         """
         ...
 

@@ -14,6 +14,7 @@ from domain.computers import (
     Session,
     StopId,
 )
+from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.identifiers import ChangeId, GoalId
 from domain.inputs import (
     AcknowledgeReactionRequest,
@@ -147,6 +148,10 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
     "storage_status": (
         StorageStatus(available=False, reason="disk full"),
         StorageStatus(available=True, reason=""),
+    ),
+    "graph_fault": (
+        GraphFault(kind=GraphFaultKind.QOS, name="/scan", reason='Größe ≤ 3 — "gripper\\jam"'),
+        GraphFault(kind=GraphFaultKind.DUPLICATE, name="/left/arm", reason=""),
     ),
     "report_backlog": (ReportBacklog(source="ros", since=1764420000123456789),),
     "goal_feedback": (
