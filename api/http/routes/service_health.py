@@ -13,9 +13,16 @@ from api.http.problems import make_problem, problem_response
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
 from domain.errors import StorageDegradedError
+from domain.graph_terms import GraphFaultKind
 from domain.tasks.holds import DRIVE_HOLD, VEHICLE_HOLD
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
+
+_GRAPH_CODES = {
+    GraphFaultKind.QOS: "ROS_QOS",
+    GraphFaultKind.TYPE: "ROS_TYPE",
+    GraphFaultKind.DUPLICATE: "ROS_DUPLICATE_NODE",
+}
 
 router = APIRouter(tags=["service"])
 
@@ -134,6 +141,8 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
     undriven = supervisor.core.driving.holds.get(DRIVE_HOLD)
     if undriven is not None:
         yield WarningJson(code="NO_DRIVE", message=undriven.reason)
+    for fault in supervisor.core.graph_faults():
+        yield WarningJson(code=_GRAPH_CODES[fault.kind], message=f"{fault.name}: {fault.reason}")
     if late := supervisor.publisher.late_ticks:
         message = f"{late} ticks skipped since the start: the machine is too slow"
         yield WarningJson(code="LATE_TICKS", message=message)

@@ -8,6 +8,7 @@ from fastapi import FastAPI
 
 from domain.actor import Actor
 from domain.findings import Finding
+from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.inputs import (
     DriveStatus,
     EmergencyStopRequest,
@@ -159,3 +160,25 @@ async def test_a_vehicle_that_cannot_be_commanded_is_a_warning(
     supervisor.deliver(DriveStatus(available=True))
 
     assert "NO_DRIVE" not in await warnings(http)
+
+
+@pytest.mark.parametrize(
+    ("kind", "code"),
+    [
+        (GraphFaultKind.QOS, "ROS_QOS"),
+        (GraphFaultKind.TYPE, "ROS_TYPE"),
+        (GraphFaultKind.DUPLICATE, "ROS_DUPLICATE_NODE"),
+    ],
+)
+async def test_what_is_wrong_in_the_ros_graph_is_a_warning(
+    http: httpx.AsyncClient,
+    live: tuple[Supervisor, SimulatedBackend],
+    kind: GraphFaultKind,
+    code: str,
+) -> None:
+    supervisor, _ = live
+    supervisor.deliver(GraphFault(kind, "/scan", "not as it should be"))
+    assert (await warnings(http))[code] == "/scan: not as it should be"
+    supervisor.deliver(GraphFault(kind, "/scan"))
+
+    assert code not in await warnings(http)
