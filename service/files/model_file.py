@@ -10,6 +10,7 @@ import gc
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from importlib import resources
 from pathlib import Path
 
 from domain.conditions.check import Fault, check, terms_of
@@ -30,6 +31,9 @@ from service.files.smh_reader import SmhParts, read_parts
 from service.files.source_text import SourceText
 from service.files.text_file import read_text_file
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
+
+EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
+"""The model of a service that is started without one."""
 
 MAX_FINDINGS = 1_000
 """Largest number of findings reported for one model; the rest is counted."""

@@ -32,7 +32,12 @@ _USUAL_FIELDS = {
 _PLAIN_TYPES = re.compile(r"std_msgs/msg/(Bool|String|Float(32|64)|U?Int(8|16|32|64))")
 
 
-def _topic(name: str) -> str:
+def topic_name(name: str) -> str:
+    """Return a full topic name.
+
+    Raises:
+        ValueError: It is none.
+    """
     if len(name) > _LONGEST or not re.fullmatch(_TOPIC, name):
         raise ValueError(
             f"invalid topic name {name!r:.60}; give the full name, such as /battery_state"
@@ -57,7 +62,7 @@ def _field(path: str) -> str:
 
 
 TopicName: TypeAlias = Annotated[
-    str, AfterValidator(_topic), Field(json_schema_extra={"pattern": _TOPIC})
+    str, AfterValidator(topic_name), Field(json_schema_extra={"pattern": _TOPIC})
 ]
 MessageType: TypeAlias = Annotated[
     str, AfterValidator(_type), Field(json_schema_extra={"pattern": _TYPE})

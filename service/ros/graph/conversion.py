@@ -17,7 +17,7 @@ import numpy as np
 from domain.errors import InvalidValueError
 from service.ros.graph.graph import Fields, Message, UnknownFieldError, UnknownTypeError
 
-_TYPE_NAME = re.compile(r"(?P<folder>[a-z]\w*/(?:msg|srv))/(?P<name>[A-Za-z]\w*)", re.ASCII)
+_TYPE_NAME = re.compile(r"(?P<folder>[a-z]\w*/(?:msg|srv|action))/(?P<name>[A-Za-z]\w*)", re.ASCII)
 _SEQUENCE = re.compile(r"sequence<(?P<element>.+?)(?:, (?P<most>\d+))?>")
 _ARRAY = re.compile(r"(?P<element>.+)\[(?P<length>\d+)\]")
 _STRING = re.compile(r"w?string(?:<(?P<most>\d+)>)?")
@@ -31,7 +31,8 @@ def find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS, which h
     """Return the class of a type.
 
     Args:
-        type_name: As `std_msgs/msg/Bool` or `lifecycle_msgs/srv/GetState`.
+        type_name: As `std_msgs/msg/Bool`, `lifecycle_msgs/srv/GetState` or
+            `nav2_msgs/action/FollowPath`.
 
     Raises:
         UnknownTypeError: The type is not installed on this machine.
