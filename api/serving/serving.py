@@ -41,6 +41,7 @@ from api.serving.misuse import MisuseError
 from api.serving.output import Output
 from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
+from api.serving.standing import until_it_stands
 from api.serving.stop_signals import StopSignals
 from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from api.terminal_text import counted, finding_line
@@ -214,8 +215,9 @@ async def run_service(
 
     If the supervisor fails, the web server ends too: a live page for a robot that is not supervised
     would be dangerous. The same holds for the gateway to ROS 2, if there is one. On a signal the
-    vehicle is stopped, nodes stay as they are, and WebSockets are closed with code 1012. A second
-    signal ends the process at once.
+    vehicle is stopped, nodes stay as they are, and WebSockets are closed with code 1012; programs
+    of nodes that run here are ended once the vehicle stands. A second signal ends the process at
+    once.
     """
     supervisor, gateway = composition.supervisor, composition.gateway
     stopping = asyncio.Event()
@@ -240,6 +242,9 @@ async def run_service(
             await serving
             if offering is not None:
                 offering.cancel()
+            if supervisor.processes is not None:
+                # Some of them may be what brakes it.
+                await until_it_stands(supervisor)
             supervising.cancel()
     except* Exception as failures:
         for failure in leaves(failures):
@@ -283,7 +288,10 @@ def greet(
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
     vehicle = " and the vehicle" if options.device is None else ""
-    yield f"Ctrl-C stops the service{vehicle}; nodes stay as they are."
+    others = "nodes stay as they are"
+    if supervisor.processes is not None:
+        others = "programs that it runs end with it, and other nodes stay as they are"
+    yield f"Ctrl-C stops the service{vehicle}; {others}."
 
 
 def greeting_json(

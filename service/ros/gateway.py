@@ -6,7 +6,6 @@ else belongs to the node `pilothouse`.
 
 import asyncio
 import logging
-import re
 from collections.abc import Collection
 from contextlib import suppress
 from functools import partial
@@ -15,6 +14,7 @@ from domain.actor import Actor
 from domain.errors import PilothouseError
 from service.ros.graph.conversion import fields_of
 from service.ros.graph.graph import Fields, Lane, Publisher, Qos, RosGraph, RosNode
+from service.ros.graph.names import is_allowed
 from service.ros.interface.endpoints import OWN_NODE, OfferedService, OfferedTopic, SubscribedTopic
 from service.ros.interface.fallback_types import (
     SERVICE_FALLBACKS,
@@ -31,11 +31,6 @@ log = logging.getLogger(__name__)
 
 CALLER = Actor("ros")
 """Recorded as the caller or sender, since ROS does not identify it."""
-
-_ROS_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
-_LONGEST = 225
-"""Most characters of a name. ROS allows 247, and gives each node services whose names are up to 22
-characters longer than that of the node."""
 
 
 class RosGateway:
@@ -137,7 +132,7 @@ class RosGateway:
 
     def _is_allowed(self, name: str) -> bool:
         """Tell whether ROS allows a name; models may have others."""
-        allowed = len(name) <= _LONGEST and _ROS_NAME.fullmatch(name) is not None
+        allowed = is_allowed(name)
         if not allowed:
             self._odd_names.add(name.rpartition("/")[0])
         return allowed

@@ -226,29 +226,6 @@ def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
     assert supervisor.simulated == (("signals",) if mocked else ())
 
 
-@pytest.mark.parametrize("absent", ["rclpy", LINK])
-def test_without_rclpy_it_is_said_what_to_do(absent: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(sys.modules, LINK, raising=False)
-    monkeypatch.setitem(sys.modules, absent, None)
-
-    with pytest.raises(MisuseError) as caught:
-        composed(ServeOptions(backend="ros2"))
-
-    for way in ("source the setup.bash", "pip install 'pilothouse[ros2]'"):
-        assert way in str(caught.value)
-
-
-def test_a_middleware_that_does_not_start_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    def start() -> None:
-        raise RuntimeError("ROS_DOMAIN_ID is not an integral number")
-
-    link = SimpleNamespace(RosLink=start)
-    monkeypatch.setitem(sys.modules, LINK, link)
-
-    with pytest.raises(MisuseError, match="ROS 2 does not start: ROS_DOMAIN_ID is"):
-        composed(ServeOptions(backend="ros2"))
-
-
 @pytest.mark.parametrize(
     "topics",
     [
