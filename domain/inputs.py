@@ -14,6 +14,7 @@ from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
+from domain.process_terms import ProcessReport, ProcessRequest
 from domain.reaction_terms import Arm, ReactionState
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant, seconds
@@ -457,6 +458,7 @@ Input: TypeAlias = (
     | SourceFault
     | VehicleReport
     | DriveStatus
+    | ProcessReport
     | BackendStatus
     | StorageStatus
     | ReportBacklog
@@ -476,6 +478,7 @@ Input: TypeAlias = (
     | AcknowledgeReactionRequest
     | ShelveRequest
     | UnshelveRequest
+    | ProcessRequest
     | DriveRequest
     | DeviceStatus
     | SupervisorStatus

@@ -75,6 +75,7 @@ class Lane(Enum):
     TRANSITIONS = "transitions"
     PARAMETERS = "parameters"
     LIVELINESS = "liveliness"
+    TARGETS = "targets"
     SENSORS = "sensors"
     NAVIGATION = "navigation"
     GATEWAY = "gateway"
