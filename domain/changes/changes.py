@@ -488,10 +488,12 @@ class Changes:
 
 def _freed(change: Change, node: PartName) -> list[PartName]:
     """Return the nodes that may begin once a node is done, without those that have ended before."""
-    freed = change.order.done(node)
-    for next_node in [each for each in freed if each not in change.open]:
-        freed += _freed(change, next_node)
-    return [each for each in freed if each in change.open]
+    freed: list[PartName] = []
+    done = [node]
+    while done:
+        for each in change.order.done(done.pop()):
+            (freed if each in change.open else done).append(each)
+    return freed
 
 
 _UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {

@@ -165,6 +165,7 @@ def _restricted(
 def _without_robot(data: dict[str, Any], parts: Collection[PartName]) -> dict[str, Any]:
     """Return the settings of a device without what is the supervisor's: vehicle and targets."""
     data.pop("start_task", None)
+    data.pop("tasks", None)
     ros2 = data.get("ros2", {})
     ros2.pop("odometry", None)
     ros2.pop("command", None)

@@ -144,7 +144,7 @@ async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
     assert (await warnings(http))["NO_POSE"] == "the vehicle never reported a pose"
     async with running(supervisor):
         assert "NO_POSE" not in await warnings(http)
-        backend.set_vehicle_reporting(False)
+        backend.set_vehicle_fault("silent")
         await clock.advance(1)
 
         assert (await warnings(http))["NO_POSE"] == "no pose of the vehicle for 0.3 s"
