@@ -7,6 +7,7 @@ from typing import TypeAlias
 from domain.actor import NOBODY, Actor
 from domain.commands import NodeCommand
 from domain.computers import ComputerName, DeviceState, Incarnation, PeerStop, Session, StopId
+from domain.controller import ControllerMessage, NavigationStatus
 from domain.findings import Fact
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
@@ -135,10 +136,10 @@ class GoalFeedback:
     """Distance along the path, from its first waypoint to the vehicle."""
     cross_track_error_m: float
     """Positive: the vehicle is left of the path."""
-    lookahead: Point
-    """The point that the tracker steers to."""
-    command: DriveCommand
-    """The drive command of the same control step."""
+    lookahead: Point | None
+    """The point that the tracker steers to; None: an external controller drives."""
+    command: DriveCommand | None
+    """The drive command of the same control step; None: an external controller drives."""
     left_out_m: float = 0.0
     """Length of the path behind the vehicle that it never came near, in m."""
 
@@ -463,6 +464,8 @@ Input: TypeAlias = (
     | ReportBacklog
     | GoalFeedback
     | GoalResult
+    | ControllerMessage
+    | NavigationStatus
     | TimePassed
     | ServiceStall
     | WriteRecord

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from domain.computers import SUPERVISOR, ComputerName
 from domain.devices.settings import DeviceSettings
+from domain.external_navigation import ExternalNavigation
 from domain.navigation import Navigation
 from domain.onboard import Onboard
 from domain.parts.system_model import SmhModel
@@ -44,8 +45,11 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         lead=robot.to_lead_settings(),
     )
     core = Supervision(model, settings, start)
-    navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)
-    return Onboard(core, navigation)
+    driving, watch = robot.to_navigation_settings(), core.driving.watch
+    controller = robot.to_controller_settings()
+    if controller is None:
+        return Onboard(core, Navigation(limits, driving, watch))
+    return Onboard(core, ExternalNavigation(limits, driving, controller, watch, start))
 
 
 def _own_processes(

@@ -8,8 +8,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
-from domain.commands import Drive, LinkCommand, NodeCommand, ProcessCommand
+from domain.commands import (
+    Drive,
+    LinkCommand,
+    NodeCommand,
+    PreemptGoal,
+    ProcessCommand,
+    SendGoal,
+)
 from domain.computers import ComputerName, Connection
+from domain.controller import ControllerMessage
 from domain.inputs import (
     BackendStatus,
     DeviceStatus,
@@ -42,6 +50,7 @@ BackendMessage: TypeAlias = (
     | ProcessReport
     | VehicleReport
     | DriveStatus
+    | ControllerMessage
     | DeviceStatus
     | SupervisorStatus
     | PeerStops
@@ -102,6 +111,24 @@ class VehicleBackend(Adapter, Protocol):
 
         Called on the event loop's thread. A command is valid for 0.5 s: then speed 0 is commanded,
         so that the robot stops when the supervisor dies.
+        """
+        ...
+
+
+class NavigationBackend(Protocol):
+    """An external controller; `tests/conformance/test_navigation.py` specifies what is asked of it.
+
+    The adapter only carries messages; the core judges them, and every deadline. It delivers
+    `ControllerStatus` whether there is a controller, which has confirmed before that it has none of
+    our goals; of each goal one `ControllerAnswer`, `ControllerFeedback` at 25 Hz at most, and one
+    `ControllerResult`.
+    """
+
+    def send(self, command: SendGoal | PreemptGoal, /) -> None:
+        """Send a goal, or ask for its end, and return at once. Never raises.
+
+        Called on the event loop's thread. The end may be asked for several times: of a goal that
+        the controller does not have, `ControllerResult` says so.
         """
         ...
 

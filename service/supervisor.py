@@ -30,7 +30,7 @@ from service.frame_publisher import PERIOD, FramePublisher
 from service.keeper import NO_STORES, Checkpoint, Keeper, Stores, Taken
 from service.live_faults import LiveFaults
 from service.node_incidents import log_node_incidents
-from service.ports import ComputersLink, ProcessRunner, RobotBackend
+from service.ports import ComputersLink, NavigationBackend, ProcessRunner, RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
@@ -53,6 +53,10 @@ class Supervisor:
 
     sources: Sequence[SourceStatus] = ()
     """How the sources of its signals are doing; set by who makes them."""
+
+    navigation: NavigationBackend | None = None
+    """The external controller, which the backend runs; set by who makes it. None: the trackers on
+    board drive."""
 
     link: ComputersLink | None = None
     """The other computers of the robot, set by who makes it; None: there are none."""
@@ -128,6 +132,11 @@ class Supervisor:
     def model(self) -> SmhModel:
         """Return the model of the robot."""
         return self._loaded.model
+
+    @property
+    def model_name(self) -> str:
+        """Return the name of the model file; empty: not known."""
+        return self._loaded.name
 
     @property
     def model_text(self) -> str:
@@ -217,8 +226,11 @@ class Supervisor:
             elif isinstance(command, ProcessCommand):
                 if self.processes is not None:
                     self.processes.send(command)
-            # Goals are for the navigation on board; the rest is for nodes and the vehicle.
-            elif not isinstance(command, SendGoal | PreemptGoal):
+            elif isinstance(command, SendGoal | PreemptGoal):
+                # Only with an external controller do goals leave the core.
+                if self.navigation is not None:
+                    self.navigation.send(command)
+            else:
                 self._backend.send(command)
         if self.link is not None:
             self.link.note(step.given)

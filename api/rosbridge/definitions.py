@@ -96,6 +96,7 @@ MESSAGES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Lines by type: constants, then fields."""
 
 _EMPTY: tuple[str, ...] = ()
+_TASK = ("bool success", "string message", "string task")
 
 SERVICES: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProxyType(
     {
@@ -116,6 +117,19 @@ SERVICES: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProxyTy
         "system_modes_msgs/srv/GetAvailableModes": (_EMPTY, ("string[] available_modes",)),
         "system_modes_msgs/srv/ChangeMode": (("string mode_name",), ("bool success",)),
         "std_srvs/srv/Empty": (_EMPTY, _EMPTY),
+        "pilothouse_msgs/srv/StartTask": (
+            ("string file", "uint64 start_index", "string controller", "float64 speed_mps"),
+            _TASK,
+        ),
+        "pilothouse_msgs/srv/DriveWaypoints": (
+            (
+                "pilothouse_msgs/Waypoint[] waypoints",
+                "uint64 start_index",
+                "string controller",
+                "float64 speed_mps",
+            ),
+            _TASK,
+        ),
     }
 )
 """Fields of the request and of the response, by type."""

@@ -158,6 +158,7 @@ async def _make_server(
         limits=composition.limits,
         simulated=composition.simulated,
         interface=composition.interface,
+        worker=composition.worker,
     )
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     await prepare(app)
@@ -263,6 +264,7 @@ def greet(
     does = "supervises" if options.device is None else f"is device {options.device} of"
     yield f"Pilothouse {installed_version()} {does} {source}: {counts}"
     yield f"  page  {url}/"
+    yield f"  ros   {url.replace('http', 'ws', 1)}/rosbridge for clients of rosbridge"
     if composition.place is not None:
         yield f"  link  {composition.place.words}"
     if access.required:

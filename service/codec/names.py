@@ -8,7 +8,7 @@ must read.
 
 from collections.abc import Mapping
 
-from domain import commands, inputs, kept, process_terms
+from domain import commands, controller, inputs, kept, process_terms
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
@@ -33,6 +33,11 @@ NAMES: Mapping[type, str] = {
     inputs.StorageStatus: "storage_status",
     inputs.GoalFeedback: "goal_feedback",
     inputs.GoalResult: "goal_result",
+    controller.ControllerStatus: "controller_status",
+    controller.ControllerAnswer: "controller_answer",
+    controller.ControllerFeedback: "controller_feedback",
+    controller.ControllerResult: "controller_result",
+    controller.NavigationStatus: "navigation_status",
     inputs.TimePassed: "time_passed",
     inputs.ServiceStall: "service_stall",
     inputs.WriteRecord: "write_record",

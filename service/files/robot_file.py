@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
+from domain.controller import ControllerSettings
 from domain.devices.settings import DeviceSettings, LeadSettings, ownership_text
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
@@ -26,7 +27,7 @@ from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
 from service.files.device_faults import faults_of_devices
 from service.files.devices_block import DeviceName, DevicesBlock, device_settings
-from service.files.driving_block import DrivingBlock, StartTaskBlock
+from service.files.driving_block import DrivingBlock, StartTaskBlock, TasksBlock
 from service.files.includes import (
     INCLUDE,
     MAX_INCLUDED,
@@ -107,6 +108,9 @@ class RobotSettings(SettingsBlock):
     there are none. Without effect in simulations."""
     link: LinkBlock = LinkBlock()
     """How these computers reach each other. Without effect in simulations."""
+    tasks: TasksBlock | None = None
+    """Tasks that clients begin by the name of a waypoint file. Default: they cannot. Without effect
+    in simulations, which do not read files."""
     start_task: StartTaskBlock | None = None
     """A task that is submitted when the service starts. Not allowed in simulations, which do not
     read files."""
@@ -179,6 +183,13 @@ class RobotSettings(SettingsBlock):
         """Return the settings of navigation."""
         return self.driving.to_navigation_settings()
 
+    def to_controller_settings(self) -> ControllerSettings | None:
+        """Return the deadlines of the external controller; None: the trackers on board drive."""
+        navigation = self.ros2.navigation
+        if navigation is None or self.backend != "ros2" or self.device is not None:
+            return None
+        return navigation.to_settings()
+
 
 def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
     """Read settings from YAML; scalars are read as in a model.
@@ -210,6 +221,11 @@ def written_out(text: str) -> str:
     """
     data = _plain_text(text)
     return _written(data) if data.get(INCLUDE) or _has_environment(data) else text
+
+
+def written_with_backend(text: str, backend: str) -> str:
+    """Return a valid robot file as the log keeps it where the command named the backend."""
+    return _written({**_plain_text(text), "backend": backend})
 
 
 def written_for_device(text: str, device: str) -> str:
@@ -275,11 +291,13 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
             raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
     for keys, _, message in _faults(settings, model):
         raise InvalidValueError(message, _pointer(*merged.place_of(keys)))
-    # One computer simulates all of it, and whoever sends settings runs no programs here.
+    # One computer simulates all of it, the trackers on board drive, and whoever sends settings runs
+    # no programs here.
     nodes = {
         name: node.model_copy(update={"process": None}) for name, node in settings.nodes.items()
     }
-    return settings.model_copy(update={"devices": {}, "device": None, "nodes": nodes})
+    alone = {"devices": {}, "device": None, "backend": "simulated", "nodes": nodes}
+    return settings.model_copy(update=alone)
 
 
 def _no_node(name: str, model: SmhModel) -> str:

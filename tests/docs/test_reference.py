@@ -21,6 +21,7 @@ from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.computers import ComputerName, DeviceState, PeerStop, StopId
 from domain.conditions.condition import Condition
+from domain.controller import NavigationStatus
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
 from domain.health.checkpoints import CheckpointSettings
@@ -242,6 +243,11 @@ def a_lost_drive_process() -> list[RecordedEvent]:
     return told(DriveStatus(available=False, reason="it has ended"), DriveStatus(available=True))
 
 
+def a_lost_controller() -> list[RecordedEvent]:
+    gone = NavigationStatus(available=False, reason="it gave no feedback for 1 s")
+    return told(gone, NavigationStatus(available=True))
+
+
 def a_write() -> list[RecordedEvent]:
     return told(
         WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", Actor("http:10.0.0.7"))
@@ -436,6 +442,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_lost_backend,
         a_stop_on_another_computer,
         a_lost_drive_process,
+        a_lost_controller,
         a_write,
         a_stall,
         a_restart,

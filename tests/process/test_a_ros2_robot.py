@@ -56,8 +56,11 @@ def test_nodes_that_are_not_there_yet_are_shown_and_the_end_is_clean(tmp_path: P
     assert (health["status"], state["simulated"]) == ("ok", [])
     assert mock.status_code == 404
     assert (copied.status_code, copied.json()["errors"][0]["pointer"]) == (422, "/from")
-    assert (code, errors) == (0, "")
+    assert code == 0
     assert seconds < 2
+    # What is offered is listed, and there is nothing else to say.
+    assert {line.partition(": ")[2].partition(" ")[0] for line in errors.splitlines()} == {"ROS"}
+    assert " ROS 2 /actuation: services change_mode, change_state," in errors
 
 
 def test_the_mock_of_a_real_robot_makes_its_signals_good(tmp_path: Path) -> None:

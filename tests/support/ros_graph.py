@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, TypeAlias
 
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
-from domain.goal_server import GoalEnd
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds, to_seconds
 from domain.vehicle import DriveCommand
 from service.clock import since_epoch
@@ -368,7 +368,7 @@ class FakeGoal:
         self.rejected = ""
         """Why it was not accepted; empty: it was."""
         self.feedback: list[Fields] = []
-        self.ended: tuple[GoalEnd, Fields] | None = None
+        self.ended: tuple[GoalOutcome, Fields] | None = None
         """How it ended, and its result; None: it has not ended."""
 
     def cancel(self) -> None:
@@ -379,7 +379,7 @@ class FakeGoal:
         """Note feedback."""
         self.feedback.append(feedback)
 
-    def end(self, end: GoalEnd, result: Fields) -> None:
+    def end(self, end: GoalOutcome, result: Fields) -> None:
         """Note the end; there is only one."""
         assert self.ended is None, f"it has ended before: {self.ended}"
         self.ended = (end, result)
@@ -408,6 +408,14 @@ class FakeClient:
             InvalidValueError: A number is beyond what ROS carries.
         """
         return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
+
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Ask, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time.
+        """
+        return await self.call(make(), within_s)
 
 
 class FakeDriveOutput:

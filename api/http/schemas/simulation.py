@@ -266,7 +266,12 @@ class SimulationBody(Body):
         default=None, description="Keys of a robot file; null: the defaults"
     )
     begin: Literal["live"] | None = Field(
-        default=None, alias="from", description="`live`: start with a copy of the live robot"
+        default=None,
+        alias="from",
+        description=(
+            "`live`: start with a copy of the live robot, which must be simulated, and have one"
+            " computer"
+        ),
     )
     until_s: Time
     sample_period_s: Annotated[float, Field(gt=0, le=MAX_UNTIL_S, allow_inf_nan=False)] = 1.0

@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
-from domain.goal_server import GoalEnd
+from domain.controller import GoalOutcome
 from domain.vehicle import DriveCommand
 
 PickedT = TypeVar("PickedT")
@@ -75,7 +75,9 @@ class Lane(Enum):
     TRANSITIONS = "transitions"
     PARAMETERS = "parameters"
     LIVELINESS = "liveliness"
+    TARGETS = "targets"
     SENSORS = "sensors"
+    NAVIGATION = "navigation"
     GATEWAY = "gateway"
 
 
@@ -102,6 +104,20 @@ class Client(Protocol):
         """
         ...
 
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Send a request of thousands of fields, and return the response.
+
+        To fill and to send it takes a tenth of a second, which is spent on another thread.
+
+        Args:
+            make: Returns its fields; called on another thread.
+            within_s: Timeout once it was sent, s.
+
+        Raises:
+            TimeoutError: There was no response in time; the fate of the request is unknown.
+        """
+        ...
+
 
 class Publisher(Protocol):
     """A publisher of a topic."""
@@ -121,7 +137,7 @@ class AcceptedGoal(Protocol):
         """Publish feedback, and return at once."""
         ...
 
-    def end(self, end: GoalEnd, result: Fields) -> None:
+    def end(self, end: GoalOutcome, result: Fields) -> None:
         """End the goal with a result, and return at once; call it once.
 
         `CANCELED` is for a goal whose client asked for that.

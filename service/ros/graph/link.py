@@ -30,13 +30,10 @@ from rclpy.qos import (
 )
 from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
-from rosidl_generator_py.import_type_support_impl import (
-    UnsupportedTypeSupport,
-)
+from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
 from domain.vehicle import DriveCommand
 from service.ros.graph.action_goals import ActionGoals
-from service.ros.graph.answers import answer_within
 from service.ros.graph.conversion import fill, find_type, require_field
 from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
 from service.ros.graph.domain_id import check_domain
@@ -56,6 +53,7 @@ from service.ros.graph.graph import (
 )
 from service.ros.graph.header import begins_with_header, stamp_in
 from service.ros.graph.sending import Sender, Turnstile, send_or_tell
+from service.ros.graph.service_client import ServiceClient
 
 _PROFILES = {
     Qos.EVENTS: QoSProfile(depth=100),
@@ -69,6 +67,8 @@ _SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
 # Each event handler slows down every wait of a lane.
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+_GOALS = {True: GoalResponse.ACCEPT, False: GoalResponse.REJECT}
+_CANCELS = {True: CancelResponse.ACCEPT, False: CancelResponse.REJECT}
 _LIVELINESS_DEPTH = 8
 _ARRIVALS_DEPTH = 5
 _LOOK_S = 1.0
@@ -241,10 +241,11 @@ class _Node:
         self._spinner = spinner
         self._node = node
 
-    def client(self, service: str, type_name: str) -> "_Client":
+    def client(self, service: str, type_name: str) -> ServiceClient:
         """Return a client."""
         kind = _find_type(type_name)
-        return _Client(self._link, self._node, kind, self._node.create_client(kind, service))
+        client = self._node.create_client(kind, service)
+        return ServiceClient(self._link.crossing, self._link.turnstile, self._node, kind, client)
 
     def publisher(self, topic: str, type_name: str, qos: Qos) -> "_Publisher":
         """Return a publisher."""
@@ -323,25 +324,16 @@ class _Node:
         """Offer an action while the link is open."""
         kind, link = _find_type(type_name), self._link
         goals = ActionGoals(link.crossing, link.sender, action, kind, handler, self._spinner.do)
-
-        def judge(request: Message) -> GoalResponse:
-            return GoalResponse.ACCEPT if goals.judge(request) else GoalResponse.REJECT
-
-        def cancel(handle: Any) -> CancelResponse:  # noqa: ANN401
-            goals.cancel(handle)
-            return CancelResponse.ACCEPT
-
-        goals.attach(
-            ActionServer(
-                self._node,
-                kind,
-                action,
-                _nothing,
-                goal_callback=judge,
-                handle_accepted_callback=goals.accept,
-                cancel_callback=cancel,
-            )
+        server = ActionServer(
+            self._node,
+            kind,
+            action,
+            _nothing,
+            goal_callback=lambda goal: _GOALS[goals.judge(goal)],
+            handle_accepted_callback=goals.accept,
+            cancel_callback=lambda handle: _CANCELS[goals.cancel(handle)],
         )
+        goals.attach(server)
 
 
 class _ArrivalWatch:
@@ -383,48 +375,6 @@ class _ArrivalWatch:
             self._reliability = wanted
             self._node.destroy_subscription(self._subscription)
             self._subscription = self._subscribe()
-
-
-class _Client:
-    """A `Client` of rclpy."""
-
-    def __init__(self, link: RosLink, node: Any, kind: Any, client: Any) -> None:  # noqa: ANN401
-        self._crossing = link.crossing
-        self._turnstile = link.turnstile
-        self._node = node
-        self._kind = kind
-        self._client = client
-
-    def is_ready(self) -> bool:
-        """Tell whether the graph knows a server."""
-        return not self._crossing.closed and bool(self._client.service_is_ready())
-
-    def servers(self) -> int:
-        """Return how many servers the graph knows."""
-        if self._crossing.closed:
-            return 0
-        return int(self._node.count_services(self._client.service_name))
-
-    async def call(self, request: Fields, within_s: float) -> Message:
-        """Send a request, and return the response.
-
-        Raises:
-            TimeoutError: There was none in time, or the link is closed.
-            InvalidValueError: The fields do not fit the request type of the service.
-        """
-        message = self._kind.Request()
-        fill(message, request)
-        await self._turnstile.wait_for_turn()
-        if self._crossing.closed:
-            raise TimeoutError("the link to ROS 2 is closed")
-        response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
-        asked = self._client.call_async(message)
-        # Awaiting the future of rclpy would busy-wait.
-        asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
-        try:
-            return await answer_within(response, within_s)
-        finally:
-            self._client.remove_pending_request(asked)
 
 
 class _Publisher:
@@ -475,11 +425,6 @@ def _find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS
         # Not a ROS 2 type, or its shared libraries are missing or built for another Python.
         raise UnknownTypeError(type_name) from error
     return kind
-
-
-def _settle(response: asyncio.Future[Message], message: Message) -> None:
-    if not response.done():
-        response.set_result(message)
 
 
 def _nothing(*_: object) -> None:

@@ -22,7 +22,9 @@ from service.ros.interface.reading_topics import reading_topics
 from service.ros.interface.robot_topics import RobotTopics
 from service.ros.interface.services import LifecycleServices, ModeServices, robot_services
 from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
+from service.ros.interface.task_services import TaskServices
 from service.supervisor import Supervisor
+from service.worker import InlineJobs, Jobs
 
 log = logging.getLogger(__name__)
 
@@ -36,23 +38,29 @@ class RosInterface:
     """Services and topics of all parts and of the robot, and the subscribed topics."""
 
     def __init__(
-        self, supervisor: Supervisor, settings: InterfaceSettings = USUAL_SETTINGS
+        self,
+        supervisor: Supervisor,
+        settings: InterfaceSettings = USUAL_SETTINGS,
+        jobs: Jobs | None = None,
     ) -> None:
         """Prepare.
 
         Args:
             supervisor: Of the robot.
             settings: Of the robot file.
+            jobs: Do what would keep the event loop; None: it is done here.
         """
         self._supervisor = supervisor
+        self.parts = supervisor.model.parts
+        """Names of the parts, in the order of the model."""
         self._listeners = Listeners()
         self._part_topics = PartTopics(supervisor, self._listeners)
         self._robot_topics = RobotTopics(supervisor, self._listeners, settings.messages)
-        parts = supervisor.model.parts
         services = chain(
-            *(LifecycleServices(supervisor, part).offered() for part in parts),
-            *(ModeServices(supervisor, part).offered() for part in parts),
+            *(LifecycleServices(supervisor, part).offered() for part in self.parts),
+            *(ModeServices(supervisor, part).offered() for part in self.parts),
             robot_services(supervisor),
+            TaskServices(supervisor, settings.folder, jobs or InlineJobs()).offered(),
         )
         topics = chain(self._part_topics.offered(), self._robot_topics.offered())
         self.services: Mapping[str, OfferedService] = {

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from service.files.waypoint_folder import WaypointFolder
 from service.ros.interface.message_sets import MessageSet
 
 
@@ -11,6 +12,8 @@ class InterfaceSettings:
 
     messages: MessageSet = MessageSet.PILOTHOUSE
     """The package that signals and the state of the robot are named in."""
+    folder: WaypointFolder | None = None
+    """Where files of tasks are looked up by their name; None: nowhere."""
 
 
 USUAL_SETTINGS = InterfaceSettings()
