@@ -85,7 +85,7 @@ class ControllerSettings:
     silent_for: Duration = seconds(1.0)
     """So long a goal may be driven without feedback."""
     taken_back_within: Duration = seconds(1.0)
-    """The end of a goal has to be confirmed after it was taken back."""
+    """The end of a goal has to be confirmed after it was taken back and the vehicle braked."""
     stands_within: Duration = seconds(3.0)
     """The vehicle has to stand after a goal was said to be reached."""
     end_tolerance_m: float = 0.5

@@ -58,6 +58,12 @@ class _Run:
     has_reported: bool = False
     taken_back_at: Instant | None = None
     """When the controller was asked last to end it; None: it may drive."""
+    confirmed_by: Instant = 0
+    """When it is asked again, and that is told."""
+    slowest_mps: float = math.inf
+    """Least speed since then, without its sign."""
+    brakes_until: Instant = 0
+    """So long the vehicle may need to stop."""
     said_arrived_at: Instant | None = None
     """When the controller said that it reached the end; None: it did not."""
     fault: str = ""
@@ -196,7 +202,12 @@ class ExternalNavigation:
         if run.said_arrived_at is not None:
             self._end(run, now)
             return
-        run.taken_back_at = now
+        self._ask_for_end(run, now)
+
+    def _ask_for_end(self, run: _Run, now: Instant) -> None:
+        run.taken_back_at, run.slowest_mps = now, math.inf
+        run.confirmed_by = now + self._controller.taken_back_within
+        run.brakes_until = now + self._vehicle.braking_time()
         self._said.append(PreemptGoal(run.goal.goal))
 
     def _stop(self, now: Instant) -> None:
@@ -303,7 +314,7 @@ class ExternalNavigation:
         if run.said_arrived_at is not None:
             self._judge_arrival(run, run.said_arrived_at, now)
         elif run.taken_back_at is not None:
-            self._judge_taking_back(run, run.taken_back_at, now)
+            self._judge_taking_back(run, now)
         elif not run.is_accepted:
             if now - run.heard_at >= self._controller.accepted_within:
                 within_s = to_seconds(self._controller.accepted_within)
@@ -324,13 +335,21 @@ class ExternalNavigation:
         except GivenUpError as error:
             self._give_up(run, str(error), now)
 
-    def _judge_taking_back(self, run: _Run, asked_at: Instant, now: Instant) -> None:
-        """Ask again for the end of a goal that is not confirmed in time, and tell of it."""
-        within = self._controller.taken_back_within
-        if now - asked_at < within:
-            return
-        run.taken_back_at, run.is_overdue = now, True
-        self._said.append(PreemptGoal(run.goal.goal))
+    def _judge_taking_back(self, run: _Run, now: Instant) -> None:
+        """Ask again for the end of a goal that is not confirmed in time, and tell of it.
+
+        A controller may confirm it when the vehicle stands: time counts from when that brakes no
+        more.
+        """
+        state = self._vehicle.fresh_state(now)
+        if state is not None and now <= run.brakes_until:
+            speed_mps = abs(state.speed_mps)
+            if speed_mps < run.slowest_mps < math.inf:
+                run.confirmed_by = now + self._controller.taken_back_within
+            run.slowest_mps = min(run.slowest_mps, speed_mps)
+        if now >= run.confirmed_by:
+            run.is_overdue = True
+            self._ask_for_end(run, now)
 
     def _judge_arrival(self, run: _Run, said_at: Instant, now: Instant) -> None:
         """Judge whether a goal was reached, once the vehicle stands or has to."""

@@ -9,11 +9,13 @@ from domain.commands import NodeCommand
 from domain.computers import ComputerName, DeviceState, Incarnation, PeerStop, Session, StopId
 from domain.controller import ControllerMessage, NavigationStatus
 from domain.findings import Fact
+from domain.graph_terms import GraphFault
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
+from domain.process_terms import ProcessReport, ProcessRequest
 from domain.reaction_terms import Arm, ReactionState
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant, seconds
@@ -457,8 +459,10 @@ Input: TypeAlias = (
     | SourceFault
     | VehicleReport
     | DriveStatus
+    | ProcessReport
     | BackendStatus
     | StorageStatus
+    | GraphFault
     | ReportBacklog
     | GoalFeedback
     | GoalResult
@@ -476,6 +480,7 @@ Input: TypeAlias = (
     | AcknowledgeReactionRequest
     | ShelveRequest
     | UnshelveRequest
+    | ProcessRequest
     | DriveRequest
     | DeviceStatus
     | SupervisorStatus

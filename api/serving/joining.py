@@ -4,7 +4,7 @@ from api.serving.misuse import MisuseError
 from service.ros.graph.graph import RosGraph
 
 _NO_ROS = (
-    "source the setup.bash of your ROS 2 distribution before you start the service, and run it with"
+    "source the setup.bash of your ROS 2 distribution before you start Pilothouse, and run it with"
     " the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
     " pip install 'pilothouse[ros2]'"
 )

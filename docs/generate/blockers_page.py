@@ -69,6 +69,10 @@ _OF_TARGETS = {
     TOO_OFTEN: "The part has returned too often within a minute.",
 }
 _OF_PARTS = {
+    "PROCESS_ENDED": "The [process](../how-to/start-a-robots-processes.md) of the node ended, and "
+    "nobody had asked for that; until the next one has run for a second.",
+    "PROCESS_GIVEN_UP": "The process of the node ended too often: it is not started again before "
+    "somebody asks, also over a restart.",
     "UNREACHABLE": "The node cannot be reached, or was never heard of.",
     "ERROR_PROCESSING": "The node is in `errorprocessing`.",
     "PARAMETERS_DRIFTED": "The node is active, no change drives it, and a parameter that it "

@@ -46,6 +46,8 @@ class LoadedModel:
     model: SmhModel
     warnings: tuple[Finding, ...]
     text: str
+    name: str = ""
+    """Of its file, without the folder; empty: not known."""
 
 
 def load_model(path: Path) -> LoadedModel:
@@ -55,7 +57,7 @@ def load_model(path: Path) -> LoadedModel:
         UnreadableFileError: There is no such file, or it is not a text file.
         InvalidModelError: The model is invalid; `findings` hold all errors.
     """
-    return read_model(read_text_file(path))
+    return replace(read_model(read_text_file(path)), name=path.name)
 
 
 def read_model(text: str, signals: Collection[SignalSettings] | None = None) -> LoadedModel:
@@ -81,7 +83,9 @@ def with_signals(loaded: LoadedModel, signals: Collection[SignalSettings]) -> Lo
     Raises:
         InvalidModelError: A condition names another one.
     """
-    return read_model(loaded.text, signals) if loaded.model.has_conditions else loaded
+    if not loaded.model.has_conditions:
+        return loaded
+    return replace(read_model(loaded.text, signals), name=loaded.name)
 
 
 def check_model(

@@ -189,7 +189,8 @@ class NavigationBlock(SettingsBlock):
     silent_for_s: Deadline = 1.0
     """Time without feedback, in s, after which the goal is taken back."""
     taken_back_within_s: Deadline = 1.0
-    """Time in which the end of a goal that was taken back has to be confirmed, in s."""
+    """Time in which the end of a goal that was taken back has to be confirmed, in s, besides the
+    time to stop at `driving.braking_mps2`."""
     stands_within_s: Deadline = 3.0
     """Time in which the vehicle has to stand after the controller said that it arrived, in s."""
     end_tolerance_m: Tolerance = 0.5

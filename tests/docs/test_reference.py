@@ -24,6 +24,7 @@ from domain.conditions.condition import Condition
 from domain.controller import NavigationStatus
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import (
     Bound,
@@ -57,6 +58,8 @@ from domain.kept import KeptHold, KeptTarget
 from domain.lifecycle import LifecycleState
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import Rule
+from domain.process_terms import ProcessAction, ProcessExit, ProcessReport, ProcessRequest
+from domain.processes.settings import ProcessSettings
 from domain.snapshot import ErrorKey
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.supervision import Supervision, SupervisionSettings
@@ -261,6 +264,13 @@ def a_full_disk() -> list[RecordedEvent]:
     return told(full, StorageStatus(available=True))
 
 
+def a_publisher_that_does_not_match() -> list[RecordedEvent]:
+    wrong = GraphFault(
+        GraphFaultKind.QOS, "/scan", "lidar: best effort publisher and reliable subscription"
+    )
+    return told(wrong, GraphFault(GraphFaultKind.QOS, "/scan"))
+
+
 def a_lost_sensor() -> list[RecordedEvent]:
     return told(SourceFault("temperature", "file /sys/class/thermal", "No such file"))
 
@@ -378,6 +388,27 @@ def a_reaction_on_a_device() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_process_that_is_given_up() -> list[RecordedEvent]:
+    """The process of a node crashes too often, and an operator starts it again."""
+    processes = {BASE: ProcessSettings(starts=2, first_back_off=seconds(1))}
+    core = Supervision(actuation_model(), SupervisionSettings(processes=processes), 0)
+    crash = ProcessReport(BASE, exit=ProcessExit(1))
+    start = ProcessRequest(BASE, ProcessAction.START, Actor("ada"))
+    inputs: tuple[Input, ...] = (
+        ProcessReport(BASE),
+        ProcessReport(BASE, 4001),
+        crash,
+        TimePassed(),
+        crash,
+        start,
+    )
+    return [
+        event
+        for at, given in enumerate(inputs)
+        for event in core.handle(given, seconds(2 * at)).events
+    ]
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -424,6 +455,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_stall,
         a_restart,
         a_full_disk,
+        a_publisher_that_does_not_match,
         a_lost_sensor,
         an_error_that_comes_and_goes,
         an_error_that_does_not_spread,
@@ -435,6 +467,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_wait,
         a_lost_device,
         a_step_left_out,
+        a_process_that_is_given_up,
         the_examples,
     )
     for event in (event for story in stories for event in story()):

@@ -133,8 +133,8 @@ def test_a_stop_at_a_device_that_is_cut_off_stops_the_robot_once_it_is_back(robo
     until(robot.are_connected)
 
     robot.supervisor.ask("PUT", "/emergency_stop", {"engaged": False})
-    for host in (robot.supervisor, robot.base, robot.arm):
-        until(lambda host=host: not is_stopped(host))
+    hosts = (robot.supervisor, robot.base, robot.arm)
+    until(lambda: not any(is_stopped(host) for host in hosts))
 
 
 def test_a_link_that_loses_packets_is_whole_again_once_it_loses_none(robot: Robot) -> None:

@@ -85,6 +85,6 @@ def press(robot: Robot, pressed: Host, other: Host) -> float:
     took_s = time.monotonic() - begun
     until(robot.are_connected, LOST_FOR_S)
     robot.supervisor.ask("PUT", "/emergency_stop", {"engaged": False})
-    for host in (robot.supervisor, robot.base, robot.arm):
-        until(lambda host=host: not is_stopped(host), LOST_FOR_S)
+    hosts = (robot.supervisor, robot.base, robot.arm)
+    until(lambda: not any(is_stopped(host) for host in hosts), LOST_FOR_S)
     return took_s

@@ -13,10 +13,17 @@ from api.http.problems import make_problem, problem_response
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
 from domain.errors import StorageDegradedError
+from domain.graph_terms import GraphFaultKind
 from domain.snapshot import HoldView
 from domain.tasks.holds import DRIVE_HOLD, NAVIGATION_HOLD, VEHICLE_HOLD
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
+
+_GRAPH_CODES = {
+    GraphFaultKind.QOS: "ROS_QOS",
+    GraphFaultKind.TYPE: "ROS_TYPE",
+    GraphFaultKind.DUPLICATE: "ROS_DUPLICATE_NODE",
+}
 
 router = APIRouter(tags=["service"])
 
@@ -142,6 +149,8 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
             message = f"no reading of {name}: {signal.source_fault}"
             yield WarningJson(code="SOURCE_FAILS", message=message)
     yield from _vehicle_warnings(supervisor.core.driving.holds)
+    for fault in supervisor.core.graph_faults():
+        yield WarningJson(code=_GRAPH_CODES[fault.kind], message=f"{fault.name}: {fault.reason}")
     if late := supervisor.publisher.late_ticks:
         message = f"{late} ticks skipped since the start: the machine is too slow"
         yield WarningJson(code="LATE_TICKS", message=message)

@@ -172,7 +172,7 @@ def test_a_controller_that_ignores_that_its_goal_is_taken_back_is_told(
 
     assert driving.holds == {"navigation": f"the controller {UNCONFIRMED}"}
     assert driving.speed_mps == 0.0
-    assert driving.controller.asked_back == 4, "it is asked once a second"
+    assert driving.controller.asked_back == 3, "it is asked once a second, after the vehicle braked"
     driving.be(heeds_cancel=True)
     driving.drive(1.5)
     assert driving.holds == {}
@@ -354,6 +354,23 @@ def test_what_is_said_of_another_goal_is_left_aside(driving: ControlledRobot) ->
     driving.give(ControllerResult(GoalId(7), GoalOutcome.ABORTED))
 
     assert driving.task.status is TaskPhase.RUNNING
+
+
+def test_a_controller_may_confirm_the_end_of_a_goal_when_the_vehicle_stands() -> None:
+    robot = ControlledRobot(vehicle=VehicleSettings(plant=Plant(braking_mps2=1.0)))
+    robot.be(heeds_cancel=False)
+    robot.submit_task(straight(50.0))
+    robot.drive(5)
+    robot.cancel_task()
+    while robot.speed_mps > 0.0:
+        robot.drive(0.5)
+        assert robot.holds == {}
+
+    robot.give(ControllerResult(GoalId(1), GoalOutcome.CANCELED))
+    robot.drive(3)
+
+    assert robot.holds == {}
+    assert robot.controller.asked_back == 1
 
 
 def test_deadlines_are_settings() -> None:
