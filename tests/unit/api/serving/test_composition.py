@@ -231,12 +231,17 @@ def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
     [
         "signals: {estop: {topic: /e, type: gone_msgs/msg/Stop, field: pressed}}",
         "command: {topic: /c, type: ackermann_msgs/msg/AckermannDrive}",
+        "navigation: {action: /go, type: nav2_msgs/action/FollowPath}",
     ],
 )
 def test_a_type_that_the_robot_file_names_has_to_be_there(
     robot: Path, topics: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    absent = ("gone_msgs/msg/Stop", "ackermann_msgs/msg/AckermannDrive")
+    absent = (
+        "gone_msgs/msg/Stop",
+        "ackermann_msgs/msg/AckermannDrive",
+        "nav2_msgs/action/FollowPath",
+    )
     link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock(), absent))
     monkeypatch.setitem(sys.modules, LINK, link)
     robot.write_text(f"ros2: {{{topics}}}\n")
@@ -252,6 +257,16 @@ def test_a_field_that_the_robot_file_names_has_to_be_there(robot: Path) -> None:
 
     with pytest.raises(UnknownFieldError, match="has no field no_such_field; it has data"):
         composed(ServeOptions(robot=robot, backend="ros2"))
+
+
+@pytest.mark.usefixtures("_ros")
+def test_goals_go_to_the_controller_that_the_robot_file_names(robot: Path) -> None:
+    robot.write_text("ros2: {navigation: {action: /go}}\n")
+    composition = composed(ServeOptions(robot=robot, backend="ros2"))
+
+    assert composition.supervisor.navigation is not None
+    composition.supervisor.let_pass()
+    assert "navigation" in composition.supervisor.core.driving.holds
 
 
 def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
