@@ -1,13 +1,13 @@
 """An external controller that is an action server; carries messages, and judges none of them.
 
-An action consists of three services and a topic. Each goal has an id of ours, by which it can be
+An action consists of three services and two topics. Each goal has an id of ours, by which it can be
 taken back whatever became of the request.
 """
 
 import asyncio
 import logging
 import secrets
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -41,8 +41,11 @@ _RESULT_S = 60.0
 it does not know the goal."""
 _END_S = 0.5
 """How long the end of the service waits for the controller to take goals back, s."""
-_REJECTED, _UNKNOWN_GOAL, _TERMINATED = 1, 2, 3
-"""Source: action_msgs/srv/CancelGoal."""
+_REJECTED, _UNKNOWN_GOAL = 1, 2
+"""Source: action_msgs/srv/CancelGoal. A goal that is being canceled already counts as terminated
+there, although it may still be driven."""
+_LIVE = frozenset({1, 2, 3})
+"""Accepted, executing and canceling. Source: action_msgs/msg/GoalStatus."""
 _ENDS = {4: GoalOutcome.SUCCEEDED, 5: GoalOutcome.CANCELED, 6: GoalOutcome.ABORTED}
 """Source: action_msgs/msg/GoalStatus."""
 _ALL_GOALS = bytes(16)
@@ -72,6 +75,8 @@ class NavigationClient:
         self._clock = clock
         self._goals: dict[GoalId, _Goal] = {}
         self._newest: _Goal | None = None
+        self._live: frozenset[bytes] = frozenset()
+        """The goals of all clients that the controller has not ended, as it said last."""
         self._feedback_due: Instant = 0
         self._status: ControllerStatus | None = None
         self._group: asyncio.TaskGroup | None = None
@@ -89,6 +94,13 @@ class NavigationClient:
         self._send_goal = node.client(f"{action}/send_goal", f"{kind}_SendGoal")
         self._get_result = node.client(f"{action}/get_result", f"{kind}_GetResult")
         self._cancel_goal = node.client(f"{action}/cancel_goal", "action_msgs/srv/CancelGoal")
+        node.subscribe(
+            f"{action}/status",
+            "action_msgs/msg/GoalStatusArray",
+            Qos.LATCHED,
+            _live_goals,
+            self._take_live_goals,
+        )
         node.subscribe(
             f"{action}/feedback",
             f"{kind}_FeedbackMessage",
@@ -178,7 +190,7 @@ class NavigationClient:
             return
         if response.return_code == _REJECTED:
             log.warning("%s: the controller refuses to end a goal", self._settings.action)
-        elif response.return_code in (_UNKNOWN_GOAL, _TERMINATED):
+        elif response.return_code == _UNKNOWN_GOAL:
             self._forget(goal)
             self._deliver(ControllerResult(goal.command.goal, GoalOutcome.UNKNOWN))
 
@@ -240,11 +252,15 @@ class NavigationClient:
             TimeoutError: It did not confirm that in time.
         """
         response = await self._cancel(_ALL_GOALS, _CALL_S)
-        for info in response.goals_canceling:
-            goal_id = _numbers(info.goal_id.uuid)
-            await self._get_result.call({"goal_id": {"uuid": goal_id}}, _CALL_S)
+        canceling = {bytes(info.goal_id.uuid) for info in response.goals_canceling}
+        # The response leaves out what is being canceled already.
+        for goal_id in sorted(canceling | self._live):
+            await self._get_result.call({"goal_id": _uuid(goal_id)}, _CALL_S)
         for goal in [*self._goals.values()]:
             self._forget(goal)
+
+    def _take_live_goals(self, live: frozenset[bytes]) -> None:
+        self._live = live
 
     def _tell(self, status: ControllerStatus) -> None:
         if status != self._status:
@@ -256,5 +272,9 @@ def _uuid(goal_id: bytes) -> Fields:
     return {"uuid": [*goal_id]}
 
 
-def _numbers(uuid: Sequence[int]) -> list[int]:
-    return [int(number) for number in uuid]
+def _live_goals(message: Message) -> frozenset[bytes]:
+    return frozenset(
+        bytes(status.goal_info.goal_id.uuid)
+        for status in message.status_list
+        if status.status in _LIVE
+    )

@@ -20,7 +20,16 @@ from service.ros.backend.navigation_client import NavigationClient
 from service.ros.graph.graph import UnknownTypeError
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.paths import straight
-from tests.support.ros_action import ABORTED, REJECTED, SUCCEEDED, TERMINATED, FakeActionServer
+from tests.support.ros_action import (
+    ABORTED,
+    NONE,
+    REJECTED,
+    SUCCEEDED,
+    TERMINATED,
+    UNKNOWN_GOAL,
+    FakeActionServer,
+    TakenGoal,
+)
 from tests.support.ros_graph import FakeGraph
 
 ACTION = "/navigate_waypoints"
@@ -194,16 +203,51 @@ async def test_a_goal_is_taken_back_only_after_its_request_was_answered(ready: W
     assert ready.news()[-1] == ControllerResult(GoalId(1), GoalOutcome.CANCELED)
 
 
-@pytest.mark.parametrize("code", [2, TERMINATED])
-async def test_a_goal_that_the_controller_does_not_have_is_over(ready: World, code: int) -> None:
+async def test_a_goal_that_the_controller_does_not_have_is_over(ready: World) -> None:
     ready.send()
     await ready.clock.advance(0.1)
-    ready.server.cancel_code = code
+    ready.server.cancel_code = UNKNOWN_GOAL
     ready.take_back()
     await ready.clock.advance(0.1)
     assert ready.news()[1:] == [ControllerResult(GoalId(1), GoalOutcome.UNKNOWN)]
     ready.take_back()
     assert ready.news() == [ControllerResult(GoalId(1), GoalOutcome.UNKNOWN)]
+
+
+async def test_a_goal_that_is_said_to_be_terminated_may_still_be_driven(ready: World) -> None:
+    """So a server of ROS 2 answers to a second cancel, while the first is ignored."""
+    ready.send()
+    await ready.clock.advance(0.1)
+    ready.news()
+    ready.server.cancel_code = TERMINATED
+    ready.take_back()
+    await ready.clock.advance(2)
+    assert ready.news() == []
+
+    ready.server.end(ready.server.goals[0], ABORTED, success=False, message="stuck")
+    await ready.clock.advance(0.1)
+    assert ready.news() == [ControllerResult(GoalId(1), GoalOutcome.ABORTED, "stuck")]
+
+
+async def test_a_controller_that_still_drives_a_goal_of_before_is_not_available(
+    world: World,
+) -> None:
+    """Its answer to a request to end all goals leaves out what is being canceled already."""
+    world.news()
+    left = TakenGoal([9] * 16, {})
+    world.server.goals.append(left)
+    world.server.cancel_code = NONE
+    info = {"goal_info": {"goal_id": {"uuid": left.id}}, "status": 3}
+    world.graph.publish(f"{ACTION}/_action/status", {"status_list": [info]})
+    world.server.appear()
+    await world.clock.advance(3)
+    (told,) = world.news()
+    assert told.available is False  # type: ignore[union-attr]
+
+    world.server.end(left, ABORTED, success=False, message="")
+    world.graph.publish(f"{ACTION}/_action/status", {"status_list": [{**info, "status": 6}]})
+    await world.clock.advance(2)
+    assert world.news() == [HERE]
 
 
 async def test_a_refusal_to_end_a_goal_is_logged_and_ends_nothing(
