@@ -116,6 +116,7 @@ start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
         ("gem_e2", PROJECT / "examples" / "models" / "gem_e2.yaml"),
         ("actuation_with_faults", PROJECT / "service" / "example" / "actuation.yaml"),
         ("ros2_robot", PROJECT / "service" / "example" / "actuation.yaml"),
+        ("ros2_tracker", PROJECT / "service" / "example" / "actuation.yaml"),
         ("watched_computer", PROJECT / "service" / "example" / "actuation.yaml"),
     ],
 )
@@ -130,7 +131,16 @@ def test_the_robots_among_the_examples_load(robot: str, model: Path) -> None:
 def test_no_robot_among_the_examples_is_forgotten() -> None:
     robots = sorted(path.stem for path in EXAMPLES.iterdir())
 
-    assert robots == ["actuation_with_faults", "gem_e2", "ros2_robot", "watched_computer"]
+    known = ["actuation_with_faults", "gem_e2", "ros2_robot", "ros2_tracker", "watched_computer"]
+    assert robots == known
+
+
+def test_the_example_with_a_tracker_names_the_action_that_it_offers() -> None:
+    settings = read_robot_file(read_text_file(EXAMPLES / "ros2_tracker.yaml"), MODEL)
+
+    navigation = settings.ros2.navigation
+    assert navigation is not None
+    assert navigation.action == "/navigate_waypoints"
 
 
 @pytest.mark.parametrize(
