@@ -9,6 +9,7 @@ from domain.commands import NodeCommand
 from domain.computers import ComputerName, DeviceState, Incarnation, PeerStop, Session, StopId
 from domain.controller import ControllerMessage, NavigationStatus
 from domain.findings import Fact
+from domain.graph_terms import GraphFault
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
@@ -461,6 +462,7 @@ Input: TypeAlias = (
     | ProcessReport
     | BackendStatus
     | StorageStatus
+    | GraphFault
     | ReportBacklog
     | GoalFeedback
     | GoalResult

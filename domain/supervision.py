@@ -24,6 +24,8 @@ from domain.devices.settings import LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.graph_faults import GraphFaults
+from domain.graph_terms import GraphFault
 from domain.health.announcing import Announcing
 from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.checkpoint_errors import CheckpointErrors
@@ -108,6 +110,7 @@ class Supervision:
             has_vehicle=settings.lead is None,
         )
         storage = Storage(outbox)
+        self._graph_faults = GraphFaults(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
         # What is lost with a device follows from that from the start.
         self._devices = self._devices_by(settings, start)
@@ -151,6 +154,7 @@ class Supervision:
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
+            self._graph_faults,
             self._robot_state,
             self._part_errors,
             *self._after_part_errors(settings, start),
@@ -393,6 +397,10 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def graph_faults(self) -> tuple[GraphFault, ...]:
+        """Return what is wrong in the ROS graph, in the order in which it was found."""
+        return tuple(self._graph_faults.faults.values())
 
     def monitors(self) -> tuple[MonitorView, ...]:
         """Return the monitors, as of the last input."""

@@ -18,6 +18,7 @@ from domain.commands import (
 )
 from domain.computers import ComputerName, Connection
 from domain.controller import ControllerMessage
+from domain.graph_terms import GraphFault
 from domain.inputs import (
     BackendStatus,
     DeviceStatus,
@@ -51,6 +52,7 @@ BackendMessage: TypeAlias = (
     | VehicleReport
     | DriveStatus
     | ControllerMessage
+    | GraphFault
     | DeviceStatus
     | SupervisorStatus
     | PeerStops

@@ -298,20 +298,20 @@ def _with_ros2(
     supervisor.processes = make_processes(robot, options.robot)
     mapped = {block.topic for block in robot.ros2.signals.values()}
     interface, worker = _interface(options, robot), make_worker()
-    gateway = RosGateway(RosInterface(supervisor, interface, worker), graph, mapped)
+    gateway = RosGateway(RosInterface(supervisor, interface, worker), graph, clock, mapped)
     limits = ServiceLimits.of(robot.limits)
     return Composition(supervisor, limits, gateway, place=place, interface=interface, worker=worker)
 
 
 def _interface(options: ServeOptions, robot: RobotSettings) -> InterfaceSettings:
     """Return what a robot file says about the interface to ROS."""
-    messages = MessageSet(robot.ros2.messages)
+    messages, frame_id = MessageSet(robot.ros2.messages), robot.vehicle.frame_id
     if options.robot is None or robot.tasks is None:
-        return InterfaceSettings(messages)
+        return InterfaceSettings(messages, frame_id=frame_id)
     folder = options.robot.parent / robot.tasks.folder
     if not folder.is_dir():
         log.warning("tasks.folder: there is no folder %s; /serve_waypoints finds no file", folder)
-    return InterfaceSettings(messages, WaypointFolder(folder))
+    return InterfaceSettings(messages, WaypointFolder(folder), frame_id)
 
 
 def _link_of(

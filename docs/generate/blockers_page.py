@@ -100,6 +100,7 @@ _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
     "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
     "NO_AUTHENTICATION": "Anyone who can reach the service may use it.",
+    "NO_CONTROLLER": "The external controller is absent, silent, or keeps a goal: tasks are held.",
     "NO_DRIVE": "Drive commands do not reach the vehicle, so tasks are held.",
     "NO_POSE": "No current pose of the vehicle, so tasks are held.",
     "SOURCE_FAILS": "The source of a signal gives no reading, or one that the signal cannot have.",

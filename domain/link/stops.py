@@ -11,7 +11,7 @@ from domain.timebase import Instant
 MAX_STOPS = 64
 """Stops of one process that are told and taken in at most; the robot is stopped by one."""
 _MAX_PROCESSES = 8
-"""Processes of one name whose stops are known at most."""
+"""Processes of one name whose stops are known at most, beside the one that is dealt with."""
 
 
 class OwnStops:
@@ -117,6 +117,7 @@ class HeardStops:
         """
         known = self._by.get(process) or _StopsOf()
         known.heard_at = now
+        known.is_certain |= lives or is_dealt_with
         said = stops[:MAX_STOPS]
         if is_dealt_with and len(self._by) > 1:
             self._take_over(process, known.stops.keys() | {stop.id for stop in said})
@@ -127,7 +128,7 @@ class HeardStops:
         if not is_dealt_with and process not in self._by and not self._has_room_for(taken):
             return
         self._by[process] = known
-        known.is_certain |= lives or is_dealt_with
+        self._drop_oldest(besides=process)
         if len(taken) == len(said):
             known.version = version
         known.stops = {
@@ -196,6 +197,12 @@ class HeardStops:
             self._ended.extend(brought_back)
             if brought_back and not known.stops:
                 del self._by[other]
+
+    def _drop_oldest(self, besides: Incarnation) -> None:
+        """Forget who was heard longest ago of too many; the others stop the robot as well."""
+        if len(self._by) > _MAX_PROCESSES + 1:
+            others = [process for process in self._by if process != besides]
+            self.replace(min(others, key=self.heard_at))
 
     def _has_room_for(self, stops: Sequence[EngagedStop]) -> bool:
         """Tell whether one more process can be remembered; without a stop there is no need to."""

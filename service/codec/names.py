@@ -12,6 +12,7 @@ from domain import commands, controller, inputs, kept, process_terms
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from domain.graph_terms import GraphFault
 from domain.link import messages
 from service.codec.recorded_step import RecordedStep
 
@@ -31,6 +32,7 @@ NAMES: Mapping[type, str] = {
     inputs.BackendStatus: "backend_status",
     inputs.ReportBacklog: "report_backlog",
     inputs.StorageStatus: "storage_status",
+    GraphFault: "graph_fault",
     inputs.GoalFeedback: "goal_feedback",
     inputs.GoalResult: "goal_result",
     controller.ControllerStatus: "controller_status",

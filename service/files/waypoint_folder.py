@@ -32,7 +32,7 @@ class WaypointFolder:
             UnknownNameError: There is no such file; the hint lists some that there are.
             UnreadableFileError: It cannot be read, or is too large.
         """
-        _check_name(name)
+        check_name(name)
         file = self.path / name
         if not self._is_inside(file):
             raise UnknownNameError("waypoint file", name, self._names())
@@ -55,8 +55,8 @@ class WaypointFolder:
         return sorted(n for n in found if not n.startswith(".") and self._is_inside(self.path / n))
 
 
-def _check_name(name: str) -> None:
-    """Reject what is no bare name of a visible file.
+def check_name(name: str) -> None:
+    """Reject what is no bare name of a visible file, without asking the file system.
 
     Raises:
         InvalidValueError: It is empty or too long, or has a separator or a control character in it.

@@ -6,12 +6,14 @@ else belongs to the node `pilothouse`.
 
 import asyncio
 import logging
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from contextlib import suppress
 from functools import partial
 
 from domain.actor import Actor
 from domain.errors import PilothouseError
+from domain.timebase import seconds
+from service.clock import Clock
 from service.ros.graph.conversion import fields_of
 from service.ros.graph.graph import Fields, Lane, Publisher, Qos, RosGraph, RosNode
 from service.ros.graph.names import is_allowed
@@ -32,25 +34,35 @@ log = logging.getLogger(__name__)
 CALLER = Actor("ros")
 """Recorded as the caller or sender, since ROS does not identify it."""
 
+_LOOK_EVERY = seconds(0.5)
+
 
 class RosGateway:
     """Offers an interface in a graph."""
 
     def __init__(
-        self, interface: RosInterface, graph: RosGraph, mapped_topics: Collection[str] = ()
+        self,
+        interface: RosInterface,
+        graph: RosGraph,
+        clock: Clock,
+        mapped_topics: Collection[str] = (),
     ) -> None:
         """Prepare.
 
         Args:
             interface: The services and topics.
             graph: The ROS 2 graph.
+            clock: Of the service.
             mapped_topics: Full names of topics that the robot file maps to signals; the backend
                 subscribes to them, and so the gateway does not.
         """
         self._interface = interface
         self._graph = graph
+        self._clock = clock
         self._mapped_topics = mapped_topics
         self._nodes: dict[str, RosNode] = {}
+        self._on_demand: dict[str, tuple[Publisher, Convert]] = {}
+        """Topics that are listened to only while somebody subscribes."""
         self._missing_types: set[str] = set()
         self._unheard_types: set[str] = set()
         self._odd_names: set[str] = set()
@@ -86,7 +98,22 @@ class RosGateway:
 
     async def run(self) -> None:
         """Publish messages about events and states, until cancelled."""
-        await self._interface.run()
+        async with asyncio.TaskGroup() as group:
+            group.create_task(self._listen_on_demand(), name="topics on demand")
+            await self._interface.run()
+
+    async def _listen_on_demand(self) -> None:
+        """Listen to each of the topics on demand while somebody subscribes to it."""
+        stops: dict[str, Callable[[], None]] = {}
+        while True:
+            for topic, (publisher, convert) in self._on_demand.items():
+                is_heard = publisher.has_subscribers()
+                if is_heard and topic not in stops:
+                    take = partial(_send, publisher, convert)
+                    stops[topic] = self._interface.listen(topic, take)
+                elif not is_heard and topic in stops:
+                    stops.pop(topic)()
+            await self._clock.sleep_until(self._clock.now() + _LOOK_EVERY)
 
     def _serve(self, service: OfferedService) -> None:
         carrier = SERVICE_FALLBACKS.get(service.type)
@@ -108,8 +135,11 @@ class RosGateway:
             return
         qos = Qos.LATCHED if topic.latched else Qos.EVENTS
         publisher = self._node(topic.node).publisher(topic.name, carrier.type, qos)
-        self._interface.listen(topic.name, partial(_send, publisher, carrier.message))
         self._offered.published[topic.name] = carrier.type
+        if topic.on_demand:
+            self._on_demand[topic.name] = (publisher, carrier.message)
+        else:
+            self._interface.listen(topic.name, partial(_send, publisher, carrier.message))
 
     def _hear(self, heard: SubscribedTopic) -> None:
         if not self._graph.has_type(heard.type):

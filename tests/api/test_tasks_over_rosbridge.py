@@ -43,6 +43,8 @@ async def app(supervisor: Supervisor, tmp_path: Path) -> AsyncIterator[FastAPI]:
     app = create_app(supervisor, allowed_hosts=[], interface=settings)
     # In a thread, for which virtual time does not wait.
     await rosbridge_clients(app).bridge()
+    # Starts its process, for which a client waits too long on a busy machine.
+    await app.state.worker.call(len, "")
     yield app
     await close_workers(app)
 

@@ -24,6 +24,7 @@ from domain.conditions.condition import Condition
 from domain.controller import NavigationStatus
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import (
     Bound,
@@ -263,6 +264,13 @@ def a_full_disk() -> list[RecordedEvent]:
     return told(full, StorageStatus(available=True))
 
 
+def a_publisher_that_does_not_match() -> list[RecordedEvent]:
+    wrong = GraphFault(
+        GraphFaultKind.QOS, "/scan", "lidar: best effort publisher and reliable subscription"
+    )
+    return told(wrong, GraphFault(GraphFaultKind.QOS, "/scan"))
+
+
 def a_lost_sensor() -> list[RecordedEvent]:
     return told(SourceFault("temperature", "file /sys/class/thermal", "No such file"))
 
@@ -447,6 +455,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_stall,
         a_restart,
         a_full_disk,
+        a_publisher_that_does_not_match,
         a_lost_sensor,
         an_error_that_comes_and_goes,
         an_error_that_does_not_spread,

@@ -66,11 +66,11 @@ async def test_a_vehicle_that_falls_silent_is_stopped_and_its_goal_aborted(
         on.client.send("goal", 100)
         await on.watch.drives()
 
-        await on.watch.set("vehicle", "odometry", False)
+        await on.watch.parameters.set("vehicle", "odometry", False)
 
         assert await on.client.ended("goal") == ("aborted", "no pose of the vehicle for 0.3 s")
         assert on.watch.commands[-1][0] == 0.0
-        await on.watch.set("vehicle", "odometry", True)
+        await on.watch.parameters.set("vehicle", "odometry", True)
         await on.watch.stands()
 
 
@@ -94,7 +94,7 @@ async def test_a_tracker_that_is_killed_leaves_no_vehicle_driving(
 ) -> None:
     async with street(link, interfaces) as on:
         # Without its own timeout, so that it is the process of the commands that stops it.
-        await on.watch.set("vehicle", "command_timeout", 1e6)
+        await on.watch.parameters.set("vehicle", "command_timeout", 1e6)
         on.client.send("goal", 100)
         await on.watch.drives()
 

@@ -88,12 +88,13 @@ class Chosen(Generic[RowType]):
 
 
 def part_rows(parts: Mapping[str, Json]) -> list[PartRow]:
-    """Return a row for each part, systems first, else in the order of the model file.
+    """Return a row for each part, systems first, else by name: as in the mode monitor of D4.8.
 
     Args:
         parts: By name.
     """
-    return sorted(map(PartRow, parts.values()), key=lambda row: not row.is_system)
+    rows = map(PartRow, parts.values())
+    return sorted(rows, key=lambda row: (not row.is_system, row.name.encode()))
 
 
 def choose(rows: Sequence[RowType], room: int | None) -> Chosen[RowType]:

@@ -10,6 +10,7 @@ from service.files.robot_file import RobotSettings
 from service.ports import Deliver
 from service.ros.backend.delivery import Delivery
 from service.ros.backend.diagnostics import ReportedDiagnostics
+from service.ros.backend.graph_watch import GraphWatch
 from service.ros.backend.navigation_client import NavigationClient
 from service.ros.backend.nodes import RosNodes
 from service.ros.backend.signals import SignalTopics
@@ -50,6 +51,7 @@ class Ros2Backend:
         self._signals = SignalTopics(robot, graph, clock)
         self._statistics = TopicStatistics(robot, graph, clock)
         self._diagnostics = ReportedDiagnostics(robot.ros2.diagnostics, graph)
+        self._watch = GraphWatch(graph, clock)
         limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
         navigation = robot.ros2.navigation
@@ -83,6 +85,7 @@ class Ros2Backend:
                 if self._navigation is not None:
                     group.create_task(self._navigation.run(), name="navigation")
                 group.create_task(self._statistics.run(hear), name="statistics of topics")
+                group.create_task(self._watch.run(hear), name="faults of the graph")
                 await self._delivery.run(deliver)
         finally:
             await self._graph.close()

@@ -9,6 +9,7 @@ from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
 from domain.controller import GoalOutcome
+from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
 
 PickedT = TypeVar("PickedT")
@@ -127,6 +128,10 @@ class Publisher(Protocol):
 
         An invalid message is logged and not sent. The message must not be changed afterwards.
         """
+        ...
+
+    def has_subscribers(self) -> bool:
+        """Tell whether the graph knows a subscription that the messages reach."""
         ...
 
 
@@ -328,6 +333,14 @@ class RosGraph(Protocol):
 
         Raises:
             UnknownTypeError: The type is not installed.
+        """
+        ...
+
+    async def look(self) -> Sequence[GraphFault]:
+        """Look at some of our topics, and return what is known to be wrong in the graph now.
+
+        Each call looks at other topics, so that none is looked at for long. A process that was
+        killed stays in the graph for some 20 s.
         """
         ...
 

@@ -24,14 +24,17 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import (
     DurabilityPolicy,
     LivelinessPolicy,
+    QoSCompatibility,
     QoSProfile,
     ReliabilityPolicy,
+    qos_check_compatible,
     qos_profile_parameter_events,
 )
 from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
 from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
+from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
 from service.ros.graph.action_goals import ActionGoals
 from service.ros.graph.conversion import fill, find_type, require_field
@@ -54,6 +57,7 @@ from service.ros.graph.graph import (
 from service.ros.graph.header import begins_with_header, stamp_in
 from service.ros.graph.sending import Sender, Turnstile, send_or_tell
 from service.ros.graph.service_client import ServiceClient
+from service.ros.graph.survey import End, Survey
 
 _PROFILES = {
     Qos.EVENTS: QoSProfile(depth=100),
@@ -104,6 +108,8 @@ class RosLink:
         """Passes messages to the event loop; once it is closed, nothing is sent any more either."""
         self.sender = Sender()
         self.turnstile = Turnstile(_REQUESTS_AT_ONCE)
+        self.survey = Survey(_why_silent)
+        """Knows our topics, and what is wrong with them."""
         self._spinners: dict[Lane, _Spinner] = {}
         self._nodes: list[Any] = []
         self._failed = asyncio.Event()
@@ -152,6 +158,12 @@ class RosLink:
             publisher.publish(drive_message(command, type_name, wheelbase_m))
 
         return DriveProcess(topic, type_name, wheelbase_m, publish, node=f"{owner}_drive")
+
+    async def look(self) -> Sequence[GraphFault]:
+        """Look at some of our topics, and return what is known to be wrong in the graph now."""
+        if not self._nodes or self.crossing.closed:
+            return ()
+        return await asyncio.to_thread(self.survey.look, self._nodes[0])
 
     async def wait_failed(self) -> None:
         """Wait until a lane fails.
@@ -250,6 +262,7 @@ class _Node:
     def publisher(self, topic: str, type_name: str, qos: Qos) -> "_Publisher":
         """Return a publisher."""
         kind = _find_type(type_name)
+        self._link.survey.add(End(topic, type_name, _PROFILES[qos], publishes=True))
         publisher = self._node.create_publisher(
             kind, topic, _PROFILES[qos], event_callbacks=_NO_PUBLISHER_EVENTS
         )
@@ -267,6 +280,7 @@ class _Node:
         """Subscribe to a topic while the link is open."""
         kind = _find_type(type_name)
         profile = _PROFILES[qos]
+        self._link.survey.add(End(topic, type_name, profile, publishes=False))
         inbox = Inbox(self._link.crossing, topic, pick, take, profile.depth)
         self._node.create_subscription(kind, topic, inbox.hear, profile, event_callbacks=_NO_EVENTS)
 
@@ -410,6 +424,10 @@ class _Publisher:
         else:
             self._sender.send(self._topic, self._send, message)
 
+    def has_subscribers(self) -> bool:
+        """Tell whether the graph knows a subscription."""
+        return not self._crossing.closed and self._publisher.get_subscription_count() > 0
+
     def _send(self, message: Fields) -> None:
         filled = self._kind()
         fill(filled, message)
@@ -425,6 +443,15 @@ def _find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS
         # Not a ROS 2 type, or its shared libraries are missing or built for another Python.
         raise UnknownTypeError(type_name) from error
     return kind
+
+
+def _why_silent(offered: QoSProfile, requested: QoSProfile) -> str:
+    """Return why a subscription hears nothing of a publisher; empty: it does."""
+    compatibility, reason = qos_check_compatible(offered, requested)
+    # Of pybind11, whose values are made anew.
+    if compatibility != QoSCompatibility.ERROR:
+        return ""
+    return str(reason).removeprefix("ERROR: ").rstrip("; ")
 
 
 def _nothing(*_: object) -> None:

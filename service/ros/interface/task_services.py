@@ -1,5 +1,6 @@
 """The services that begin a task: with a waypoint file, or with the waypoints themselves."""
 
+import asyncio
 import logging
 from collections.abc import Mapping
 from typing import Any
@@ -10,10 +11,10 @@ from domain.inputs import TaskRequest
 from domain.paths.path import Path
 from service.files.csv_table import InvalidWaypointsError
 from service.files.driving_block import DEFAULT_CONTROLLER, DEFAULT_SPEED_MPS
-from service.files.waypoint_folder import WaypointFolder
+from service.files.waypoint_folder import WaypointFolder, check_name
 from service.ros.interface.endpoints import OWN_NODE, Fields, OfferedService
 from service.ros.interface.message_check import DRIVE_WAYPOINTS, START_TASK, checked
-from service.ros.interface.waypoint_jobs import check_count, path_of, read_track
+from service.ros.interface.waypoint_jobs import check_count, read_track, rows_of
 from service.supervisor import Supervisor
 from service.worker import Jobs
 
@@ -82,6 +83,7 @@ class TaskServices:
         try:
             if self._folder is None:
                 raise NoWaypointFolderError
+            check_name(name)
             track = await self._jobs.call(read_track, self._folder, name)
             response = await self._begin(track.path, asked, caller)
         except PilothouseError as error:
@@ -97,9 +99,11 @@ class TaskServices:
         try:
             check_count(waypoints)
             if len(waypoints) <= _HERE:
-                path = path_of(waypoints)
+                path = Path(rows_of(waypoints))
             else:
-                path = await self._jobs.call(path_of, waypoints)
+                # A thread for many small objects, which would be packed for the worker here.
+                rows = await asyncio.to_thread(rows_of, waypoints)
+                path = await self._jobs.call(Path, rows)
             return await self._begin(path, asked, caller)
         except PilothouseError as error:
             return _rejected(f"{len(waypoints)} waypoints", caller, error)

@@ -1,13 +1,13 @@
-"""Jobs on the waypoints of a service call: reading a file, and checking those in a request.
+"""Work on the waypoints of a service call: reading a file, and checking those in a request.
 
-They are done where a worker does them, since 100,000 waypoints take some 0.3 s; so arguments and
-results can be pickled.
+100,000 waypoints take some 0.3 s, which is not for the event loop.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from domain.errors import InvalidValueError
 from domain.paths.path import Path
@@ -51,16 +51,16 @@ def check_count(waypoints: Sequence[object]) -> None:
         raise InvalidValueError(message, "waypoints")
 
 
-def path_of(waypoints: Sequence[object]) -> Path:
-    """Return the path along waypoints as they are in a message.
+def rows_of(waypoints: Sequence[object]) -> NDArray[np.float64]:
+    """Return waypoints of a message as rows, shape (n, 3): x m, y m, yaw rad.
 
     A field that is left out is an error, as over HTTP: its ROS default would be a place.
 
     Raises:
-        InvalidValueError: They are no path; `pointer` leads to what is wrong.
+        InvalidValueError: A field is missing, unknown or no number; `pointer` leads to it.
     """
     rows = [_row(waypoint, f"waypoints/{index}") for index, waypoint in enumerate(waypoints)]
-    return Path(np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS)))
+    return np.array(rows, dtype=np.float64).reshape(-1, len(COLUMNS))
 
 
 def _row(waypoint: object, pointer: str) -> tuple[float, ...]:

@@ -25,8 +25,17 @@ _POLL_S = 0.02
 _BOOL, _DOUBLE, _STRING, _INTEGER = 1, 3, 4, 2
 
 
-async def soon(condition: Callable[[], bool] | Callable[[], Awaitable[bool]], what: str) -> None:
+async def soon(
+    condition: Callable[[], bool] | Callable[[], Awaitable[bool]],
+    what: str,
+    told: Callable[[], str] = str,
+) -> None:
     """Wait until something is so.
+
+    Args:
+        condition: Whether it is so.
+        what: What is waited for.
+        told: Returns what may explain why it does not come.
 
     Raises:
         AssertionError: It is not so in time.
@@ -39,7 +48,7 @@ async def soon(condition: Callable[[], bool] | Callable[[], Awaitable[bool]], wh
                     return
                 await asyncio.sleep(_POLL_S)
     except TimeoutError as error:
-        raise AssertionError(f"it took too long: {what}") from error
+        raise AssertionError(f"it took too long: {what}\n{told()}") from error
 
 
 class Running:
@@ -158,6 +167,26 @@ class GoalClient:
         return self.of(goal, "status")[0], self.of(goal, "message")[0]
 
 
+class Parameters:
+    """Sets the parameters of nodes.
+
+    Args:
+        link: Joins the graph.
+    """
+
+    def __init__(self, link: Link) -> None:
+        self._clients = link.node("setter", Lane.PARAMETERS)
+
+    async def set(self, node: str, parameter: str, value: bool | int | float | str) -> None:
+        """Set a parameter of a node, as `ros2 param set` does."""
+        service = f"/{node}/set_parameters"
+        client = self._clients.client(service, "rcl_interfaces/srv/SetParameters")
+        await ready(client)
+        asked = {"name": parameter, "value": _value(value)}
+        response = await client.call({"parameters": [asked]}, SOON_S)
+        assert response.results[0].successful, response.results[0].reason
+
+
 class Watch:
     """Hears the vehicle and what it is commanded.
 
@@ -172,7 +201,7 @@ class Watch:
         """Where the vehicle is, in m."""
         self.speed_mps = math.nan
         self._node = link.node("watch", Lane.SENSORS)
-        self._clients = link.node("setter", Lane.PARAMETERS)
+        self.parameters = Parameters(link)
         self._node.subscribe(
             "/cmd_vel", "geometry_msgs/msg/Twist", Qos.EVENTS, _pick_command, self.commands.append
         )
@@ -192,15 +221,6 @@ class Watch:
     async def stands(self) -> None:
         """Wait until the vehicle stands."""
         await soon(lambda: abs(self.speed_mps) < 0.01, "that the vehicle stands")
-
-    async def set(self, node: str, parameter: str, value: bool | int | float | str) -> None:
-        """Set a parameter of a node, as `ros2 param set` does."""
-        service = f"/{node}/set_parameters"
-        client = self._clients.client(service, "rcl_interfaces/srv/SetParameters")
-        await ready(client)
-        asked = {"name": parameter, "value": _value(value)}
-        response = await client.call({"parameters": [asked]}, SOON_S)
-        assert response.results[0].successful, response.results[0].reason
 
 
 def _pick_command(message: Message) -> tuple[float, float]:
@@ -251,5 +271,5 @@ async def street(
         client = await enter(running(sys.executable, str(CLIENT), ACTION, environment=interfaces))
         watch = Watch(link)
         await watch.there()
-        await soon(lambda: '"ready"' in client.text, f"the action\n{drives.text}")
+        await soon(lambda: '"ready"' in client.text, "the action", lambda: drives.text)
         yield Street(watch, drives, GoalClient(client))

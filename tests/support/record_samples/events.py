@@ -95,6 +95,8 @@ from domain.events.reactions import (
     ReactionWouldAct,
 )
 from domain.events.service import (
+    GraphFaultEnded,
+    GraphFaultFound,
     NotRestored,
     ServiceRestored,
     ServiceStalled,
@@ -321,6 +323,8 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
+    "ros.fault": (GraphFaultFound(fault="qos", name="/scan", reason="best effort publisher"),),
+    "ros.fault_ended": (GraphFaultEnded(fault="duplicate", name="/left/arm"),),
     "service.not_restored": (NotRestored(what="node left/arm", reason="not in the model"),),
     "service.restored": (
         ServiceRestored(

@@ -22,6 +22,7 @@ from domain.controller import (
     GoalOutcome,
     NavigationStatus,
 )
+from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.identifiers import ChangeId, GoalId
 from domain.inputs import (
     AcknowledgeReactionRequest,
@@ -155,6 +156,10 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
     "storage_status": (
         StorageStatus(available=False, reason="disk full"),
         StorageStatus(available=True, reason=""),
+    ),
+    "graph_fault": (
+        GraphFault(kind=GraphFaultKind.QOS, name="/scan", reason='Größe ≤ 3 — "gripper\\jam"'),
+        GraphFault(kind=GraphFaultKind.DUPLICATE, name="/left/arm", reason=""),
     ),
     "report_backlog": (ReportBacklog(source="ros", since=1764420000123456789),),
     "goal_feedback": (

@@ -319,8 +319,8 @@ def test_the_supervisor_runs_the_whole_robot_and_simulates_what_no_device_owns(
 def test_a_device_that_the_robot_file_does_not_have_is_refused(robot: Path) -> None:
     robot.write_text(DEVICES)
 
-    with pytest.raises(MisuseError, match="leg"):
-        read_files(ServeOptions(robot=robot, device="leg"))
+    with pytest.raises(MisuseError, match=r"no device 'arn'; known: arm"):
+        read_files(ServeOptions(robot=robot, device="arn"))
 
 
 def test_a_robot_of_one_computer_has_no_link(robot: Path) -> None:

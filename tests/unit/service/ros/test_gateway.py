@@ -53,7 +53,7 @@ class Offered:
         self.robot = RosRobot(model, settings)
         self.clock = self.robot.clock
         self.graph = FakeGraph(self.clock, missing)
-        self.gateway = RosGateway(self.robot.interface, self.graph, mapped)
+        self.gateway = RosGateway(self.robot.interface, self.graph, self.clock, mapped)
         # It only lets others have their turn in between, and there are none.
         for _ in self.gateway.offer().__await__():
             pass
@@ -126,12 +126,13 @@ def test_where_they_are_not_others_stand_in_and_nothing_else_is_heard() -> None:
     assert "/estop" not in types
 
 
-def test_only_requests_are_kept_for_who_comes_late() -> None:
+def test_only_requests_and_the_path_are_kept_for_who_comes_late() -> None:
     offered = Offered()
     topics: list[OfferedTopic] = list(offered.robot.interface.topics.values())
 
     latched = {name for name, qos in offered.graph.qos.items() if qos is Qos.LATCHED}
-    assert latched == {topic.name for topic in topics if topic.name.endswith("request_info")}
+    requests = {topic.name for topic in topics if topic.name.endswith("request_info")}
+    assert latched == requests | {"/pilothouse/path"}
     assert offered.graph.qos["/actuation/mode_event"] is Qos.EVENTS
 
 
@@ -282,6 +283,21 @@ async def test_a_file_that_cannot_be_served_is_answered_with_the_reason(
 
         assert not response["success"]
         assert response["message"].startswith("this robot has no folder for waypoint files")
+
+
+async def test_the_overlay_is_made_only_while_somebody_subscribes(native: Offered) -> None:
+    overlays = native.graph.published("/pilothouse/overlay")
+    await native.clock.advance(5.0)
+    assert not overlays
+
+    native.graph.hear("/pilothouse/overlay")
+    await native.clock.advance(5.0)
+    native.graph.leave("/pilothouse/overlay")
+    await native.clock.advance(0.6)
+    seen = len(overlays)
+    await native.clock.advance(5.0)
+
+    assert seen == len(overlays) >= 5
 
 
 async def test_a_reading_is_heard_and_a_refused_one_is_logged(

@@ -16,10 +16,10 @@ def names(*parts: Json) -> list[str]:
     return [row.name for row in part_rows(named("name", *parts))]
 
 
-def test_systems_come_before_nodes_and_else_they_keep_their_order() -> None:
-    parts = (part("leg"), system("robot", "arm", "body"), system("body", "leg"), part("arm"))
+def test_systems_come_before_nodes_and_both_are_in_the_order_of_their_bytes() -> None:
+    parts = (part("leg"), system("robot", "arm", "body"), system("body", "leg"), part("Arm"))
 
-    assert names(*parts) == ["robot", "body", "leg", "arm"]
+    assert names(*parts) == ["body", "robot", "Arm", "leg"]
 
 
 def test_a_part_of_two_systems_has_one_row() -> None:
