@@ -343,3 +343,31 @@ def test_a_robot_of_one_computer_has_no_link(robot: Path) -> None:
 
     assert composition.supervisor.link is None
     assert composition.place is None
+
+
+PROCESS = "nodes: {drive_base: {process: {command: [base]}}}\n"
+
+
+def test_programs_of_simulated_nodes_are_not_run_and_that_is_told(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text(PROCESS)
+
+    assert composed(ServeOptions(robot=robot)).supervisor.processes is None
+    assert "`process` of the robot file has no effect" in caplog.text
+
+
+@pytest.mark.usefixtures("_ros")
+def test_programs_of_real_nodes_are_run(robot: Path) -> None:
+    robot.write_text(PROCESS)
+
+    assert composed(ServeOptions(robot=robot, backend="ros2")).supervisor.processes is not None
+    robot.write_text("nodes: {drive_base: {}}\n")
+    assert composed(ServeOptions(robot=robot, backend="ros2")).supervisor.processes is None
+
+
+def test_what_is_simulated_can_be_given_faults() -> None:
+    faults = composed(ServeOptions()).supervisor.live_faults
+
+    assert faults is not None
+    assert set(faults.node_faults) == {"drive_base", "manipulator"}
