@@ -102,7 +102,7 @@ bench: $(INSTALLED_DEV) ## run the benchmarks, with other software for compariso
 
 bench-ros2: $(INSTALLED_ROS2) ## run the benchmarks with fifty real ROS 2 nodes, and write docs/benchmarks.md
 	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -s -p no:cacheprovider -m bench --timeout=0 \
-	  tests/bench/bench_ros2.py tests/bench/bench_ros2_estop.py \
+	  tests/bench/bench_ros2.py tests/bench/bench_ros2_estop.py tests/bench/bench_ros2_states.py \
 	  tests/bench/bench_ros2_topics.py $(ARGS); \
 	  code=$$?; $(ROS2)/bin/python -m tests.support.bench_document && exit $$code
 

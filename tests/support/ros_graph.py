@@ -12,14 +12,19 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, TypeAlias
 
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
+from domain.graph_terms import GraphFault
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds, to_seconds
 from domain.vehicle import DriveCommand
 from service.clock import since_epoch
 from service.pacing import Alarm
 from service.ros.graph.drive import Deadman, drive_message
 from service.ros.graph.graph import (
+    OWNER,
+    ActionHandler,
     Fields,
+    GoalT,
     GraphFailedError,
     Lane,
     Message,
@@ -105,7 +110,11 @@ class FakeGraph:
         self.drive_trouble = ""
         """Why new outputs for drive commands do not work at first; empty: they work."""
         """Every output for drive commands."""
+        self.faults: list[GraphFault] = []
+        """What is wrong in the graph."""
         self.closed = False
+        self.actions: dict[str, ActionHandler[Any]] = {}
+        """Who drives the goals of each action of ours."""
         self._published: defaultdict[str, list[Fields]] = defaultdict(list)
         self._latched: dict[str, Fields] = {}
         self._listeners: defaultdict[str, list[Callable[[Message], None]]] = defaultdict(list)
@@ -132,12 +141,18 @@ class FakeGraph:
         if "no_such_field" in path:
             raise UnknownFieldError(type_name, "no_such_field", ["data"])
 
-    def drive_output(self, topic: str, type_name: str, wheelbase_m: float) -> "FakeDriveOutput":
+    def drive_output(
+        self, topic: str, type_name: str, wheelbase_m: float, owner: str = OWNER
+    ) -> "FakeDriveOutput":
         """Return an output that publishes in this graph."""
         self._note(topic, type_name, Qos.COMMANDS)
         output = FakeDriveOutput(self, topic, type_name, wheelbase_m)
         self.drive_outputs.append(output)
         return output
+
+    async def look(self) -> Sequence[GraphFault]:
+        """Return what the test set in `faults`."""
+        return tuple(self.faults)
 
     async def wait_failed(self) -> None:
         """Wait until the test calls `fail`."""
@@ -161,6 +176,20 @@ class FakeGraph:
     def published(self, topic: str) -> list[Fields]:
         """Return what was published on a topic, by whomever."""
         return self._published[topic]
+
+    def hear(self, topic: str) -> list[Message]:
+        """Let somebody subscribe to a topic; what is returned grows with each message."""
+        heard: list[Message] = []
+        self._listen(topic, Qos.LATCHED, heard.append)
+        return heard
+
+    def leave(self, topic: str) -> None:
+        """Let nobody listen to a topic any more."""
+        self._listeners.pop(topic, None)
+
+    def is_heard(self, topic: str) -> bool:
+        """Tell whether anybody listens to a topic."""
+        return bool(self._listeners.get(topic))
 
     def set_alive(self, topic: str, alive: bool) -> None:
         """Let a topic have one more publisher that lives, or none any more; it is heard at once."""
@@ -196,6 +225,22 @@ class FakeGraph:
         except Exception:
             _log.exception("%s failed; the request gets an empty response", service)
             return {}
+
+    def send_goal(self, action: str, goal: Fields) -> "FakeGoal":
+        """Let a client send a goal.
+
+        Raises:
+            KeyError: There is no such action.
+        """
+        handler = self.actions[action]
+        sent = FakeGoal(handler)
+        try:
+            read = handler.read(as_message(goal))
+        except InvalidValueError as error:
+            sent.rejected = str(error)
+        else:
+            handler.begin(read, sent)
+        return sent
 
     def fail(self) -> None:
         """Let the link to ROS 2 break."""
@@ -330,6 +375,36 @@ class FakeRosNode:
         self._graph._note(service, type_name)  # noqa: SLF001
         self._graph.offer(service, answer)
 
+    def serve_action(self, action: str, type_name: str, handler: ActionHandler[GoalT]) -> None:
+        """Offer an action; see `FakeGraph.send_goal`."""
+        self._graph._note(action, type_name)  # noqa: SLF001
+        self._graph.actions[action] = handler
+
+
+class FakeGoal:
+    """A goal that a client sent in a `FakeGraph`; an `AcceptedGoal`."""
+
+    def __init__(self, handler: ActionHandler[Any]) -> None:
+        self._handler = handler
+        self.rejected = ""
+        """Why it was not accepted; empty: it was."""
+        self.feedback: list[Fields] = []
+        self.ended: tuple[GoalOutcome, Fields] | None = None
+        """How it ended, and its result; None: it has not ended."""
+
+    def cancel(self) -> None:
+        """Let the client cancel it."""
+        self._handler.cancel(self)
+
+    def feed_back(self, feedback: Fields) -> None:
+        """Note feedback."""
+        self.feedback.append(feedback)
+
+    def end(self, end: GoalOutcome, result: Fields) -> None:
+        """Note the end; there is only one."""
+        assert self.ended is None, f"it has ended before: {self.ended}"
+        self.ended = (end, result)
+
 
 class FakeClient:
     """A client in a `FakeGraph`; a `Client`."""
@@ -354,6 +429,14 @@ class FakeClient:
             InvalidValueError: A number is beyond what ROS carries.
         """
         return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
+
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Ask, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time.
+        """
+        return await self.call(make(), within_s)
 
 
 class FakeDriveOutput:
@@ -412,3 +495,7 @@ class FakePublisher:
     def publish(self, message: Fields) -> None:
         """Send a message."""
         self._graph._publish(self._topic, message, self._latched)  # noqa: SLF001
+
+    def has_subscribers(self) -> bool:
+        """Tell whether anybody in the graph listens to the topic."""
+        return self._graph.is_heard(self._topic)

@@ -12,6 +12,7 @@ from service.files.robot_file import RobotSettings, read_robot_file
 from service.link.supervisor_end import SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
+from service.ros.interface.message_sets import MessageSet
 from service.start_task import StartTaskError
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph
@@ -76,6 +77,31 @@ def test_the_settings_of_a_robot_file_reach_the_core_and_the_service(robot: Path
     signal = composition.supervisor.core.signal("battery_level")
     assert signal.settings["threshold"] == 0.3
     assert composition.limits.stream_clients == 3
+
+
+def test_a_simulated_robot_may_name_its_messages_as_smart_polaris_does(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text("ros2: {messages: gem_state_msgs}\n")
+
+    assert composed(ServeOptions(robot=robot)).interface.messages is MessageSet.GEM
+    assert caplog.records == []
+
+
+def test_the_folder_of_waypoint_files_is_beside_the_robot_file(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text("tasks: {folder: tracks}\n")
+
+    folder = composed(ServeOptions(robot=robot)).interface.folder
+    assert folder is not None
+    assert folder.path == robot.parent / "tracks"
+    assert "there is no folder" in caplog.text
+
+    caplog.clear()
+    folder.path.mkdir()
+    composed(ServeOptions(robot=robot))
+    assert caplog.records == []
 
 
 def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:
@@ -200,29 +226,6 @@ def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
     assert supervisor.simulated == (("signals",) if mocked else ())
 
 
-@pytest.mark.parametrize("absent", ["rclpy", LINK])
-def test_without_rclpy_it_is_said_what_to_do(absent: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(sys.modules, LINK, raising=False)
-    monkeypatch.setitem(sys.modules, absent, None)
-
-    with pytest.raises(MisuseError) as caught:
-        composed(ServeOptions(backend="ros2"))
-
-    for way in ("source the setup.bash", "pip install 'pilothouse[ros2]'"):
-        assert way in str(caught.value)
-
-
-def test_a_middleware_that_does_not_start_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    def start() -> None:
-        raise RuntimeError("ROS_DOMAIN_ID is not an integral number")
-
-    link = SimpleNamespace(RosLink=start)
-    monkeypatch.setitem(sys.modules, LINK, link)
-
-    with pytest.raises(MisuseError, match="ROS 2 does not start: ROS_DOMAIN_ID is"):
-        composed(ServeOptions(backend="ros2"))
-
-
 @pytest.mark.parametrize(
     "topics",
     [
@@ -316,8 +319,8 @@ def test_the_supervisor_runs_the_whole_robot_and_simulates_what_no_device_owns(
 def test_a_device_that_the_robot_file_does_not_have_is_refused(robot: Path) -> None:
     robot.write_text(DEVICES)
 
-    with pytest.raises(MisuseError, match="leg"):
-        read_files(ServeOptions(robot=robot, device="leg"))
+    with pytest.raises(MisuseError, match=r"no device 'arn'; known: arm"):
+        read_files(ServeOptions(robot=robot, device="arn"))
 
 
 def test_a_robot_of_one_computer_has_no_link(robot: Path) -> None:

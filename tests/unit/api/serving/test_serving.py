@@ -57,6 +57,12 @@ def test_without_ros_2_the_service_ends_with_what_to_do_about_it(
     assert "setup.bash" in capsys.readouterr().err
 
 
+def test_the_greeting_says_where_clients_of_rosbridge_connect() -> None:
+    address = URL.replace("http://", "ws://")
+
+    assert f"  ros   {address}/rosbridge " in greeting(ServeOptions())
+
+
 def test_the_greeting_of_a_service_with_a_token_shows_how_to_send_it_and_not_the_token() -> None:
     told = greeting(ServeOptions(), Access.with_token(TOKEN))
 

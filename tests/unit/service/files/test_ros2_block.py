@@ -29,6 +29,14 @@ def test_a_robot_of_which_nothing_is_said_has_no_topics() -> None:
     assert (block.signals, block.odometry, block.command) == ({}, None, None)
 
 
+def test_messages_are_our_own_unless_the_file_names_those_of_smart_polaris() -> None:
+    assert read_robot_file("", MODEL).ros2.messages == "pilothouse_msgs"
+    given = read_robot_file("ros2: {messages: gem_state_msgs}\n", MODEL)
+    assert given.ros2.messages == "gem_state_msgs"
+
+    assert faults("ros2: {messages: my_msgs}\n") == [(1, 8, "INVALID_VALUE")]
+
+
 def test_topics_of_signals_vehicle_and_commands_hold() -> None:
     settings = read_robot_file(
         """
