@@ -101,8 +101,9 @@ for image in "${@:-pilothouse}"; do
                 build localhost/pilothouse-ros2 Dockerfile.ros2 "$BASE_ROS2"
             ;;
         dev)
+            # As run_dev.sh names it for root, for whom nothing is adapted.
             quietly "Building the development image" \
-                build localhost/pilothouse-dev Dockerfile.dev "$BASE"
+                build localhost/pilothouse-dev:0 Dockerfile.dev "$BASE"
             ;;
         *)
             echo "${0##*/}: no image is named '$image': pilothouse, link, ros2, dev" >&2

@@ -94,3 +94,25 @@ def test_the_four_steps_with_ros_nodes_in_containers_of_their_own() -> None:
     assert (actual["state"], actual["mode"]) == ("active", "PERFORMANCE")
     assert "nodes" not in simulated
     assert (code, containers()) == (143, [])
+
+
+def test_tests_run_in_the_development_image() -> None:
+    needs("pilothouse-dev:0")
+
+    done = run("run_dev.sh", "python", "-m", "pytest", "-q", "tests/unit/test_structure.py")
+
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " passed" in done.stdout
+
+
+def test_the_developer_becomes_root_without_a_password() -> None:
+    needs("pilothouse-dev:0")
+
+    told = subprocess.run(
+        ["podman", "run", "--rm", "pilothouse-dev:0", "sh", "-c", "id -u && sudo -n id -u"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert told.stdout.split() == ["1000", "0"], told.stderr
