@@ -49,6 +49,7 @@ def create_app(
     limits: ServiceLimits = USUAL_LIMITS,
     simulated: SimulatedParts | None = None,
     interface: InterfaceSettings = USUAL_SETTINGS,
+    worker: Worker | None = None,
 ) -> FastAPI:
     """Return the application; it starts no task and no process.
 
@@ -66,13 +67,14 @@ def create_app(
         limits: How much may be asked of it.
         simulated: What a simulation can go on with a copy of; None: the robot is real.
         interface: What is offered to clients of rosbridge.
+        worker: Of `make_worker`; it is closed with the others. None: a new one.
     """
-    worker = Worker([model_jobs.__name__, task_jobs.__name__])
+    worker = worker or make_worker()
     app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
     app.state.replayer = Worker([frame_jobs.__name__], deadline_s=REPLAY_DEADLINE_S)
     app.state.rosbridge_clients = make_rosbridge_clients(
-        supervisor, interface, limits.requests_per_s, app.state.stream_server
+        supervisor, interface, worker, limits.requests_per_s, app.state.stream_server
     )
     app.state.simulated = simulated
     app.state.copying = asyncio.Lock()
@@ -82,6 +84,11 @@ def create_app(
     app.include_router(rosbridge.router)
     _guard(app, supervisor, allowed_hosts, allowed_origins or AllowedOrigins())
     return app
+
+
+def make_worker() -> Worker:
+    """Return what does the work on models and waypoints; its process starts with the first job."""
+    return Worker([model_jobs.__name__, task_jobs.__name__])
 
 
 def _guard(

@@ -7,13 +7,13 @@ told.
 """
 
 from dataclasses import dataclass
-from enum import Enum
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from domain.commands import Drive, PreemptGoal, SendGoal
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
 from domain.identifiers import GoalId
 from domain.inputs import DriveStatus, GoalFeedback, GoalResult, VehicleReport
@@ -31,14 +31,6 @@ REPLACED = "replaced by a newer goal"
 
 _STOP_FOR: Duration = seconds(2.0)
 """Speed 0 is commanded so long after a goal whose vehicle is not known to be at standstill."""
-
-
-class GoalEnd(Enum):
-    """How a goal ended, as an action server tells it."""
-
-    SUCCEEDED = "succeeded"
-    ABORTED = "aborted"
-    CANCELED = "canceled"
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +87,7 @@ class GoalEnded:
     """A goal has ended; nothing more is told of it."""
 
     goal: GoalId
-    end: GoalEnd
+    end: GoalOutcome
     message: str = ""
     """Why it was not reached; empty: it was."""
 
@@ -109,7 +101,7 @@ class _Current:
 
     id: GoalId
     length_m: float
-    closes_as: GoalEnd | None = None
+    closes_as: GoalOutcome | None = None
     """How it ends when the vehicle is at standstill; None: it is still driven."""
     due: Instant = 0
     """By then the vehicle has to be at standstill."""
@@ -160,7 +152,7 @@ class GoalServer:
         """Replace the current goal, if any, by another; return its number."""
         current = self._current
         if current is not None:
-            self._end(current, current.closes_as or GoalEnd.ABORTED, REPLACED)
+            self._end(current, current.closes_as or GoalOutcome.ABORTED, REPLACED)
         self._count += 1
         goal = GoalId(self._count)
         self._current = _Current(goal, asked.path.length_m)
@@ -185,7 +177,7 @@ class GoalServer:
         if current is None or current.id != goal or current.closes_as is not None:
             return
         self._navigation.handle(PreemptGoal(goal), now)
-        self._close(current, GoalEnd.CANCELED, now)
+        self._close(current, GoalOutcome.CANCELED, now)
 
     def report(self, report: VehicleReport, now: Instant) -> None:
         """Take a report of the vehicle.
@@ -214,7 +206,7 @@ class GoalServer:
             return
         self._navigation.handle(PreemptGoal(current.id), now)
         self._begin_stop(now)
-        self._end(current, GoalEnd.ABORTED, why)
+        self._end(current, GoalOutcome.ABORTED, why)
 
     # --- time ------------------------------------------------------------------------------------
 
@@ -247,11 +239,11 @@ class GoalServer:
             driven = min(max(message.distance_m / current.length_m, 0.0), 1.0)
             self._untold.append(GoalProgress(current.id, message.target_index, driven))
         elif message.succeeded:
-            self._close(current, GoalEnd.SUCCEEDED, now)
+            self._close(current, GoalOutcome.SUCCEEDED, now)
         else:
             self.abort(message.reason, now)
 
-    def _close(self, current: _Current, end: GoalEnd, now: Instant) -> None:
+    def _close(self, current: _Current, end: GoalOutcome, now: Instant) -> None:
         """End a goal when the vehicle is at standstill."""
         current.closes_as, current.due = end, now + self._stop_within
         self._begin_stop(now)
@@ -277,7 +269,7 @@ class GoalServer:
         """End a goal whose vehicle has to stop, as soon as it is known whether it does."""
         assert current.closes_as is not None
         if self._watch.stands:
-            canceled = current.closes_as is GoalEnd.CANCELED
+            canceled = current.closes_as is GoalOutcome.CANCELED
             self._end(current, current.closes_as, "canceled" if canceled else "")
         elif self._watch.is_lost:
             self._fail_to_stop(current, "there is no pose of the vehicle", now)
@@ -286,10 +278,12 @@ class GoalServer:
 
     def _fail_to_stop(self, current: _Current, why: str, now: Instant) -> None:
         self._begin_stop(now)
-        self._end(current, GoalEnd.ABORTED, why)
+        self._end(current, GoalOutcome.ABORTED, why)
 
-    def _end(self, current: _Current, end: GoalEnd, message: str) -> None:
-        self._untold.append(GoalEnded(current.id, end, "" if end is GoalEnd.SUCCEEDED else message))
+    def _end(self, current: _Current, end: GoalOutcome, message: str) -> None:
+        self._untold.append(
+            GoalEnded(current.id, end, "" if end is GoalOutcome.SUCCEEDED else message)
+        )
         self._current = None
 
     def _stop(self) -> Drive:

@@ -24,6 +24,8 @@ from domain.devices.settings import LeadSettings
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.graph_faults import GraphFaults
+from domain.graph_terms import GraphFault
 from domain.health.announcing import Announcing
 from domain.health.built_in_errors import LOST, UNREACHABLE
 from domain.health.checkpoint_errors import CheckpointErrors
@@ -40,6 +42,7 @@ from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.processes.processes import Processes
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
 from domain.reactions.reaction import Reaction, reactions_of
@@ -93,7 +96,8 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         parts = self._parts = Parts(model, outbox, settings.device_of)
-        causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
+        checkpoints, processes = settings.checkpoints, settings.processes
+        causes = ErrorCauses(model, checkpoints, settings.nodes_of_devices, processes)
         health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
         self.driving = Driving(
@@ -106,10 +110,13 @@ class Supervision:
             has_vehicle=settings.lead is None,
         )
         storage = Storage(outbox)
+        self._graph_faults = GraphFaults(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
         # What is lost with a device follows from that from the start.
         self._devices = self._devices_by(settings, start)
         errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
+        self.processes = Processes(processes, model.nodes, errors, outbox)
+        """The processes of nodes; read only."""
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
@@ -147,6 +154,7 @@ class Supervision:
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
+            self._graph_faults,
             self._robot_state,
             self._part_errors,
             *self._after_part_errors(settings, start),
@@ -169,6 +177,7 @@ class Supervision:
         return (
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
+            self.processes,
             # It evaluates all conditions, and so comes last of those that watch some.
             FactChanges(self.conditions, parts, self.driving, outbox),
             propagation,
@@ -388,6 +397,10 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def graph_faults(self) -> tuple[GraphFault, ...]:
+        """Return what is wrong in the ROS graph, in the order in which it was found."""
+        return tuple(self._graph_faults.faults.values())
 
     def monitors(self) -> tuple[MonitorView, ...]:
         """Return the monitors, as of the last input."""

@@ -51,6 +51,9 @@ class DriveCommand:
     """Angle of the front wheels, left positive."""
 
 
+DEFAULT_FRAME = "map"
+"""Coordinate frame of poses and waypoints. Source: REP 105."""
+
 REFERENCE_WHEELBASE_M = 1.75
 """Wheelbase of the vehicle for which the constants of trackers and limits of error are given."""
 

@@ -14,6 +14,8 @@ SCALAR = -1
 """Length of a field that is no array, in `rosapi_msgs/msg/TypeDef`; 0 is an array of any length."""
 
 _HEADER = "std_msgs/Header header"
+_XYZ = ("float64 x", "float64 y", "float64 z")
+_SECONDS = ("int32 sec", "uint32 nanosec")
 
 _MESSAGES: Mapping[str, tuple[str, ...]] = {
     "pilothouse_msgs/msg/BatteryLevel": (_HEADER, "float32 battery_level"),
@@ -86,9 +88,62 @@ _MESSAGES: Mapping[str, tuple[str, ...]] = {
         "diagnostic_msgs/KeyValue[] values",
     ),
     "diagnostic_msgs/msg/KeyValue": ("string key", "string value"),
+    "visualization_msgs/msg/MarkerArray": ("visualization_msgs/Marker[] markers",),
+    "visualization_msgs/msg/Marker": (
+        "int32 ARROW=0",
+        "int32 CUBE=1",
+        "int32 SPHERE=2",
+        "int32 CYLINDER=3",
+        "int32 LINE_STRIP=4",
+        "int32 LINE_LIST=5",
+        "int32 CUBE_LIST=6",
+        "int32 SPHERE_LIST=7",
+        "int32 POINTS=8",
+        "int32 TEXT_VIEW_FACING=9",
+        "int32 MESH_RESOURCE=10",
+        "int32 TRIANGLE_LIST=11",
+        "int32 ARROW_STRIP=12",
+        "int32 ADD=0",
+        "int32 MODIFY=0",
+        "int32 DELETE=2",
+        "int32 DELETEALL=3",
+        _HEADER,
+        "string ns",
+        "int32 id",
+        "int32 type",
+        "int32 action",
+        "geometry_msgs/Pose pose",
+        "geometry_msgs/Vector3 scale",
+        "std_msgs/ColorRGBA color",
+        "builtin_interfaces/Duration lifetime",
+        "bool frame_locked",
+        "geometry_msgs/Point[] points",
+        "std_msgs/ColorRGBA[] colors",
+        "string texture_resource",
+        "sensor_msgs/CompressedImage texture",
+        "visualization_msgs/UVCoordinate[] uv_coordinates",
+        "string text",
+        "string mesh_resource",
+        "visualization_msgs/MeshFile mesh_file",
+        "bool mesh_use_embedded_materials",
+    ),
+    "visualization_msgs/msg/MeshFile": ("string filename", "uint8[] data"),
+    "visualization_msgs/msg/UVCoordinate": ("float32 u", "float32 v"),
+    "sensor_msgs/msg/CompressedImage": (_HEADER, "string format", "uint8[] data"),
+    "nav_msgs/msg/Path": (_HEADER, "geometry_msgs/PoseStamped[] poses"),
+    "geometry_msgs/msg/PoseStamped": (_HEADER, "geometry_msgs/Pose pose"),
+    "geometry_msgs/msg/Pose": (
+        "geometry_msgs/Point position",
+        "geometry_msgs/Quaternion orientation",
+    ),
+    "geometry_msgs/msg/Point": _XYZ,
+    "geometry_msgs/msg/Vector3": _XYZ,
+    "geometry_msgs/msg/Quaternion": (*_XYZ, "float64 w"),
+    "std_msgs/msg/ColorRGBA": ("float32 r", "float32 g", "float32 b", "float32 a"),
     "std_msgs/msg/String": ("string data",),
     "std_msgs/msg/Header": ("builtin_interfaces/Time stamp", "string frame_id"),
-    "builtin_interfaces/msg/Time": ("int32 sec", "uint32 nanosec"),
+    "builtin_interfaces/msg/Duration": _SECONDS,
+    "builtin_interfaces/msg/Time": _SECONDS,
 }
 MESSAGES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {**_MESSAGES, **{alias: _MESSAGES[own] for alias, own in ALIASES.items()}}
@@ -96,6 +151,7 @@ MESSAGES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Lines by type: constants, then fields."""
 
 _EMPTY: tuple[str, ...] = ()
+_TASK = ("bool success", "string message", "string task")
 
 SERVICES: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProxyType(
     {
@@ -116,6 +172,19 @@ SERVICES: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProxyTy
         "system_modes_msgs/srv/GetAvailableModes": (_EMPTY, ("string[] available_modes",)),
         "system_modes_msgs/srv/ChangeMode": (("string mode_name",), ("bool success",)),
         "std_srvs/srv/Empty": (_EMPTY, _EMPTY),
+        "pilothouse_msgs/srv/StartTask": (
+            ("string file", "uint64 start_index", "string controller", "float64 speed_mps"),
+            _TASK,
+        ),
+        "pilothouse_msgs/srv/DriveWaypoints": (
+            (
+                "pilothouse_msgs/Waypoint[] waypoints",
+                "uint64 start_index",
+                "string controller",
+                "float64 speed_mps",
+            ),
+            _TASK,
+        ),
     }
 )
 """Fields of the request and of the response, by type."""

@@ -15,8 +15,10 @@ MAX_QUEUE = 100
 _SNAPSHOTS = frozenset(
     {
         "diagnostic_msgs/msg/DiagnosticArray",
+        "nav_msgs/msg/Path",
         "pilothouse_msgs/msg/SystemState",
         "pilothouse_msgs/msg/TaskStatus",
+        "visualization_msgs/msg/MarkerArray",
     }
 )
 """Types whose newest message replaces older ones: a slow client gets only the newest."""

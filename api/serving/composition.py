@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+from api.app import make_worker
 from api.distribution import installed_version
 from api.http.limits import ServiceLimits
 from api.serving.computers import make_link
@@ -27,15 +28,18 @@ from service.files.robot_file import (
     read_robot_file,
     written_for_device,
     written_out,
+    written_with_backend,
 )
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
+from service.files.waypoint_folder import WaypointFolder
 from service.keeper import NO_STORES, Stores
 from service.link.device_end import DeviceEnd
 from service.link.place import Place, place_in
 from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ports import NodeBackend, RobotBackend, SignalSource
+from service.processes.from_settings import make_processes
 from service.ros.backend.backend import Ros2Backend
 from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
@@ -56,6 +60,7 @@ from service.storage.sqlite.journal import SqliteJournal
 from service.storage.sqlite.opening import StoreSettings
 from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
+from service.worker import Worker
 
 log = logging.getLogger(__name__)
 
@@ -105,6 +110,8 @@ class Composition:
     """Where this computer is among those of the robot; None: it is the only one."""
     interface: InterfaceSettings = USUAL_SETTINGS
     """What is offered to ROS, and to clients of rosbridge."""
+    worker: Worker | None = None
+    """Does jobs of the gateway, and may do others; None: there is no gateway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,15 +158,20 @@ def read_files(options: ServeOptions) -> RobotFiles:
         text = read_text_file(options.robot)
         settings = read_robot_file(text, loaded.model)
         loaded = with_signals(loaded, settings.to_signal_settings())
+        if options.backend not in (None, settings.backend):
+            text = written_with_backend(text, options.backend)
         if options.device is None:
             text = written_out(text)
         else:
             settings = settings.model_copy(update={"device": options.device})
             text = written_for_device(text, options.device)
+    if options.backend is not None:
+        settings = settings.model_copy(update={"backend": options.backend})
     try:
         share = share_of(loaded.model, settings)
     except UnknownDeviceError as error:
-        raise MisuseError(f"{options.robot}: {error}") from error
+        known = error.hint or "it has no block `devices`"
+        raise MisuseError(f"{options.robot}: {error}; {known}") from error
     name = robot_name(settings.name, model)
     if settings.device is not None:
         name = f"{name}-{settings.device}"
@@ -206,7 +218,7 @@ def compose(
         UnknownTypeError: The type of a topic in the robot file is not installed.
         UnknownFieldError: That type does not have the field that the robot file names.
     """
-    is_real = (options.backend or files.settings.backend) == "ros2"
+    is_real = files.settings.backend == "ros2"
     make = _with_ros2 if is_real else _with_simulated
     for left in files.share.left_out:
         log.warning("left to the supervisor: %s", left.words)
@@ -228,6 +240,8 @@ def _with_simulated(
     mocked = options.mock_signals or robot.mock is not False
     if robot.ros2.model_copy(update={"messages": Ros2Block().messages}) != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
+    if any(node.process is not None for node in robot.nodes.values()):
+        log.warning("`process` of the robot file has no effect: the nodes are simulated")
     now = clock.now()
     memory = None if stores.journal is None else memory_in(stores.journal.found)
     simulated = make_simulated_robot(
@@ -249,10 +263,11 @@ def _with_simulated(
         files.own_part, onboard, clock, whole, backend.readings, what, stores=stores
     )
     supervisor.sources, supervisor.link = status, link
+    supervisor.live_faults = backend
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
     return Composition(
-        supervisor, limits, simulated=parts, place=place, interface=_interface(robot)
+        supervisor, limits, simulated=parts, place=place, interface=_interface(options, robot)
     )
 
 
@@ -279,17 +294,24 @@ def _with_ros2(
     else:
         backend, status = _with_sources(files, clock, ros, (ros,), link)
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
-    supervisor.sources, supervisor.link = status, link
+    supervisor.sources, supervisor.link, supervisor.navigation = status, link, ros
+    supervisor.processes = make_processes(robot, options.robot)
     mapped = {block.topic for block in robot.ros2.signals.values()}
-    interface = _interface(robot)
-    gateway = RosGateway(RosInterface(supervisor, interface), graph, mapped)
+    interface, worker = _interface(options, robot), make_worker()
+    gateway = RosGateway(RosInterface(supervisor, interface, worker), graph, clock, mapped)
     limits = ServiceLimits.of(robot.limits)
-    return Composition(supervisor, limits, gateway, place=place, interface=interface)
+    return Composition(supervisor, limits, gateway, place=place, interface=interface, worker=worker)
 
 
-def _interface(robot: RobotSettings) -> InterfaceSettings:
+def _interface(options: ServeOptions, robot: RobotSettings) -> InterfaceSettings:
     """Return what a robot file says about the interface to ROS."""
-    return InterfaceSettings(MessageSet(robot.ros2.messages))
+    messages, frame_id = MessageSet(robot.ros2.messages), robot.vehicle.frame_id
+    if options.robot is None or robot.tasks is None:
+        return InterfaceSettings(messages, frame_id=frame_id)
+    folder = options.robot.parent / robot.tasks.folder
+    if not folder.is_dir():
+        log.warning("tasks.folder: there is no folder %s; /serve_waypoints finds no file", folder)
+    return InterfaceSettings(messages, WaypointFolder(folder), frame_id)
 
 
 def _link_of(
@@ -343,6 +365,8 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
         named.append(topics.command.type)
     if topics.diagnostics is not None:
         named.append(DIAGNOSTICS)
+    if topics.navigation is not None:
+        named.append(topics.navigation.type)
     for type_name in named:
         if not graph.has_type(type_name):
             raise UnknownTypeError(type_name)

@@ -41,6 +41,7 @@ from api.serving.misuse import MisuseError
 from api.serving.output import Output
 from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
+from api.serving.standing import until_it_stands
 from api.serving.stop_signals import StopSignals
 from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from api.terminal_text import counted, finding_line
@@ -157,6 +158,7 @@ async def _make_server(
         limits=composition.limits,
         simulated=composition.simulated,
         interface=composition.interface,
+        worker=composition.worker,
     )
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     await prepare(app)
@@ -213,8 +215,9 @@ async def run_service(
 
     If the supervisor fails, the web server ends too: a live page for a robot that is not supervised
     would be dangerous. The same holds for the gateway to ROS 2, if there is one. On a signal the
-    vehicle is stopped, nodes stay as they are, and WebSockets are closed with code 1012. A second
-    signal ends the process at once.
+    vehicle is stopped, nodes stay as they are, and WebSockets are closed with code 1012; programs
+    of nodes that run here are ended once the vehicle stands. A second signal ends the process at
+    once.
     """
     supervisor, gateway = composition.supervisor, composition.gateway
     stopping = asyncio.Event()
@@ -239,6 +242,9 @@ async def run_service(
             await serving
             if offering is not None:
                 offering.cancel()
+            if supervisor.processes is not None:
+                # Some of them may be what brakes it.
+                await until_it_stands(supervisor)
             supervising.cancel()
     except* Exception as failures:
         for failure in leaves(failures):
@@ -258,6 +264,7 @@ def greet(
     does = "supervises" if options.device is None else f"is device {options.device} of"
     yield f"Pilothouse {installed_version()} {does} {source}: {counts}"
     yield f"  page  {url}/"
+    yield f"  ros   {url.replace('http', 'ws', 1)}/rosbridge for clients of rosbridge"
     if composition.place is not None:
         yield f"  link  {composition.place.words}"
     if access.required:
@@ -281,7 +288,10 @@ def greet(
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
     vehicle = " and the vehicle" if options.device is None else ""
-    yield f"Ctrl-C stops the service{vehicle}; nodes stay as they are."
+    others = "nodes stay as they are"
+    if supervisor.processes is not None:
+        others = "programs that it runs end with it, and other nodes stay as they are"
+    yield f"Ctrl-C stops the service{vehicle}; {others}."
 
 
 def greeting_json(

@@ -316,7 +316,7 @@ class Changes:
         if is_strict and pursuit.outcome is not StepStatus.SUCCEEDED:
             self._stop(change, now)
         elif not change.order.waits(pursuit.node):
-            self._steps.add(change, _freed(change, pursuit.node))
+            self._steps.add(change, change.freed_by(pursuit.node))
 
     def _stop(self, change: Change, now: Instant) -> None:
         """Begin no further step of a running change; steps in flight end."""
@@ -484,16 +484,6 @@ class Changes:
         """Release the parts of an ended change, except nodes that it is still driving."""
         if change.status is not ChangeStatus.RUNNING:
             self._parts.let_go(change.id, set(parts) - change.open)
-
-
-def _freed(change: Change, node: PartName) -> list[PartName]:
-    """Return the nodes that may begin once a node is done, without those that have ended before."""
-    freed: list[PartName] = []
-    done = [node]
-    while done:
-        for each in change.order.done(done.pop()):
-            (freed if each in change.open else done).append(each)
-    return freed
 
 
 _UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {

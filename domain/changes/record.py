@@ -268,6 +268,15 @@ class Change:
             self.pursuits[node] = pursuit
         return pursuit
 
+    def freed_by(self, node: PartName) -> list[PartName]:
+        """Return the nodes that may begin once a node is done, but those that ended before it."""
+        freed: list[PartName] = []
+        done = [node]
+        while done:
+            for each in self.order.done(done.pop()):
+                (freed if each in self.open else done).append(each)
+        return freed
+
     def leave(self, nodes: Iterable[PartName], status: StepStatus, now: Instant) -> None:
         """Note that nodes are not on their way any more; their pending steps end."""
         for node in nodes:

@@ -131,6 +131,40 @@ class StorageRecovered(Event):
         return "storage works again"
 
 
+@dataclass(frozen=True, slots=True)
+class GraphFaultFound(Event):
+    """Something is wrong in the ROS graph: messages do not come, or two nodes have one name."""
+
+    kind = "ros.fault"
+    is_input = True
+
+    fault: str
+    """`qos`: incompatible quality of service; `type`: another message type; `duplicate`: two nodes
+    of one name."""
+    name: str
+    """Full name of the topic, or of the node."""
+    reason: str
+
+    def _words(self) -> str:
+        return f"{self.name}: {self.reason}"
+
+
+@dataclass(frozen=True, slots=True)
+class GraphFaultEnded(Event):
+    """Something that was wrong in the ROS graph is right again."""
+
+    kind = "ros.fault_ended"
+    is_input = True
+
+    fault: str
+    """As in `ros.fault`."""
+    name: str
+    """As in `ros.fault`."""
+
+    def _words(self) -> str:
+        return f"{self.name} is right again in the ROS graph"
+
+
 def _counted(count: int, noun: str, more: str = "") -> str:
     """Return such as `2 holds`; empty: there are none."""
     return f"{count} {noun}{'' if count == 1 else 's'}{more}" if count else ""

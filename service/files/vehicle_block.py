@@ -4,12 +4,13 @@ from typing import Annotated, TypeAlias
 
 from pydantic import Field
 
-from domain.vehicle import VehicleLimits
+from domain.vehicle import DEFAULT_FRAME, VehicleLimits
 from service.files.settings_block import Number, SettingsBlock
 
 Coordinate: TypeAlias = Annotated[float, Field(ge=-1e7, le=1e7, allow_inf_nan=False)]
 Rate: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]
 Lag: TypeAlias = Annotated[float, Field(ge=0, le=60, allow_inf_nan=False)]
+FrameId: TypeAlias = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_/]{0,99}$")]
 Deviation: TypeAlias = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 
 
@@ -73,6 +74,8 @@ class VehicleBlock(SettingsBlock):
     """Initial pose of the simulated vehicle."""
     plant: PlantBlock = PlantBlock()
     """Dynamics of the vehicle. Default: ideal."""
+    frame_id: FrameId = DEFAULT_FRAME
+    """Coordinate frame of waypoints and poses, as ROS names it: for what is drawn in RViz."""
 
     def to_limits(self) -> VehicleLimits:
         """Return the limits of the vehicle, real or simulated."""

@@ -12,8 +12,8 @@ from types import MappingProxyType
 import numpy as np
 
 from domain.commands import Drive
+from domain.controller import GoalOutcome
 from domain.goal_server import (
-    GoalEnd,
     GoalEnded,
     GoalMessage,
     GoalProgress,
@@ -184,16 +184,16 @@ class TrackerNode:
             case GoalEnded():
                 log.info("goal %d: %s", message.goal, _WORDS[message.end] + message.message)
                 result = {
-                    "success": message.end is GoalEnd.SUCCEEDED,
+                    "success": message.end is GoalOutcome.SUCCEEDED,
                     "message": message.message,
                 }
                 self._accepted.pop(message.goal).end(message.end, result)
 
 
-_WORDS: Mapping[GoalEnd, str] = MappingProxyType(
+_WORDS: Mapping[GoalOutcome, str] = MappingProxyType(
     {
-        GoalEnd.SUCCEEDED: "succeeded",
-        GoalEnd.ABORTED: "aborted: ",
-        GoalEnd.CANCELED: "",
+        GoalOutcome.SUCCEEDED: "succeeded",
+        GoalOutcome.ABORTED: "aborted: ",
+        GoalOutcome.CANCELED: "",
     }
 )

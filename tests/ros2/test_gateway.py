@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-from domain.inputs import Reading
+from api.rosbridge.definitions import MESSAGES
+from domain.inputs import Reading, TaskRequest
 from domain.simulation.node_settings import Fault
 from service.clock import MonotonicClock
 from service.ros.gateway import RosGateway
@@ -24,6 +25,7 @@ from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_live_robot, running
 from tests.support.models import ARM
+from tests.support.paths import straight
 from tests.support.waiting import until
 
 pytestmark = pytest.mark.ros2
@@ -71,7 +73,7 @@ async def robot() -> AsyncIterator[Robot]:
     make_link = import_module("service.ros.graph.link").RosLink
     link, others_link = make_link(), make_link()
     supervisor, backend = make_live_robot(MonotonicClock())
-    gateway = RosGateway(RosInterface(supervisor), link)
+    gateway = RosGateway(RosInterface(supervisor), link, supervisor.clock)
     await gateway.offer()
     async with running(supervisor):
         publishing = asyncio.create_task(gateway.run(), name="gateway")
@@ -175,3 +177,27 @@ async def test_the_robot_tells_its_state_and_its_diagnostics(robot: Robot) -> No
     assert states[-1]["message"] == "ERROR: BATTERY_LOW"
     names = {each["name"] for each in diagnoses[-1]["status"]}
     assert {"pilothouse: system state", "pilothouse: drive_base"} <= names
+
+
+async def test_who_draws_the_robot_gets_markers_and_the_path_of_its_task(robot: Robot) -> None:
+    markers = robot.hear("/pilothouse/overlay", "visualization_msgs/msg/MarkerArray")
+    robot.supervisor.submit(TaskRequest(straight(), 0, "pure_pursuit", 1.0))
+    await until(lambda: bool(markers and markers[-1]["markers"][0]["points"]), POLL_S)
+
+    assert {each["header"]["frame_id"] for each in markers[-1]["markers"]} == {"map"}
+
+    paths = robot.hear("/pilothouse/path", "nav_msgs/msg/Path", Qos.LATCHED)
+    await until(lambda: bool(paths and paths[-1]["poses"]), POLL_S)
+    late = robot.hear("/pilothouse/path", "nav_msgs/msg/Path", Qos.LATCHED)
+    await until(lambda: len(late) > 0, POLL_S)
+
+    assert late[0] == paths[-1]
+    assert [each["pose"]["position"]["x"] for each in late[0]["poses"]] == [0.0, 20.0]
+
+
+@pytest.mark.parametrize("name", ["Marker", "MarkerArray", "MeshFile", "UVCoordinate"])
+def test_viewers_are_told_the_fields_of_a_marker_as_they_are_installed(name: str) -> None:
+    installed = getattr(import_module("visualization_msgs.msg"), name)
+    lines = [line for line in MESSAGES[f"visualization_msgs/msg/{name}"] if "=" not in line]
+
+    assert [line.partition(" ")[2] for line in lines] == [*installed.get_fields_and_field_types()]

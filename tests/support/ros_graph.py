@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, TypeAlias
 
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
-from domain.goal_server import GoalEnd
+from domain.graph_terms import GraphFault
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds, to_seconds
 from domain.vehicle import DriveCommand
 from service.clock import since_epoch
@@ -109,6 +110,8 @@ class FakeGraph:
         self.drive_trouble = ""
         """Why new outputs for drive commands do not work at first; empty: they work."""
         """Every output for drive commands."""
+        self.faults: list[GraphFault] = []
+        """What is wrong in the graph."""
         self.closed = False
         self.actions: dict[str, ActionHandler[Any]] = {}
         """Who drives the goals of each action of ours."""
@@ -147,6 +150,10 @@ class FakeGraph:
         self.drive_outputs.append(output)
         return output
 
+    async def look(self) -> Sequence[GraphFault]:
+        """Return what the test set in `faults`."""
+        return tuple(self.faults)
+
     async def wait_failed(self) -> None:
         """Wait until the test calls `fail`."""
         await self._failed.wait()
@@ -169,6 +176,20 @@ class FakeGraph:
     def published(self, topic: str) -> list[Fields]:
         """Return what was published on a topic, by whomever."""
         return self._published[topic]
+
+    def hear(self, topic: str) -> list[Message]:
+        """Let somebody subscribe to a topic; what is returned grows with each message."""
+        heard: list[Message] = []
+        self._listen(topic, Qos.LATCHED, heard.append)
+        return heard
+
+    def leave(self, topic: str) -> None:
+        """Let nobody listen to a topic any more."""
+        self._listeners.pop(topic, None)
+
+    def is_heard(self, topic: str) -> bool:
+        """Tell whether anybody listens to a topic."""
+        return bool(self._listeners.get(topic))
 
     def set_alive(self, topic: str, alive: bool) -> None:
         """Let a topic have one more publisher that lives, or none any more; it is heard at once."""
@@ -368,7 +389,7 @@ class FakeGoal:
         self.rejected = ""
         """Why it was not accepted; empty: it was."""
         self.feedback: list[Fields] = []
-        self.ended: tuple[GoalEnd, Fields] | None = None
+        self.ended: tuple[GoalOutcome, Fields] | None = None
         """How it ended, and its result; None: it has not ended."""
 
     def cancel(self) -> None:
@@ -379,7 +400,7 @@ class FakeGoal:
         """Note feedback."""
         self.feedback.append(feedback)
 
-    def end(self, end: GoalEnd, result: Fields) -> None:
+    def end(self, end: GoalOutcome, result: Fields) -> None:
         """Note the end; there is only one."""
         assert self.ended is None, f"it has ended before: {self.ended}"
         self.ended = (end, result)
@@ -408,6 +429,14 @@ class FakeClient:
             InvalidValueError: A number is beyond what ROS carries.
         """
         return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
+
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Ask, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time.
+        """
+        return await self.call(make(), within_s)
 
 
 class FakeDriveOutput:
@@ -466,3 +495,7 @@ class FakePublisher:
     def publish(self, message: Fields) -> None:
         """Send a message."""
         self._graph._publish(self._topic, message, self._latched)  # noqa: SLF001
+
+    def has_subscribers(self) -> bool:
+        """Tell whether anybody in the graph listens to the topic."""
+        return self._graph.is_heard(self._topic)

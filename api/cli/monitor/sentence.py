@@ -249,8 +249,8 @@ def _holds(robot: Robot) -> Mapping[str, Json]:
 _LEVELS: Mapping[str, Literal["held", "aborted"]] = {"HELD": "held", "ABORTED": "aborted"}
 """Words with a level of their own: nothing is wrong, and yet a person has to do something."""
 _STANDS = {"RUNNING": "running", "PAUSING": "stopping", "PAUSED": "paused"}
-_UNABLE = ("vehicle", "drive_process")
-"""The holds of a vehicle that cannot be driven: without a pose, or without commands."""
+_UNABLE = ("vehicle", "drive_process", "navigation")
+"""The holds of a vehicle that cannot be driven: without a pose, commands or a controller."""
 _UNKNOWN_TASKS = {
     "RUNNING_TASK": ("RUNNING", "the task is running"),
     "PAUSED_TASK": ("PAUSED", "the task is paused"),

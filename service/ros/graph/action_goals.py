@@ -10,8 +10,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Generic
 
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
-from domain.goal_server import GoalEnd
 from service.ros.graph.conversion import fill
 from service.ros.graph.crossing import Crossing
 from service.ros.graph.graph import ActionHandler, Fields, GoalT, Message
@@ -21,9 +21,9 @@ MAX_GOALS = 8
 """Most goals of an action that have not ended; further ones are rejected."""
 
 _TRANSITIONS = {
-    GoalEnd.SUCCEEDED: "succeed",
-    GoalEnd.ABORTED: "abort",
-    GoalEnd.CANCELED: "canceled",
+    GoalOutcome.SUCCEEDED: "succeed",
+    GoalOutcome.ABORTED: "abort",
+    GoalOutcome.CANCELED: "canceled",
 }
 _log = logging.getLogger(__name__)
 
@@ -90,17 +90,18 @@ class ActionGoals(Generic[GoalT]):
         handle.execute()
         self._crossing.post(self._handler.begin, read, goal)
 
-    def cancel(self, handle: Any) -> None:  # noqa: ANN401  # rclpy's
-        """Pass a cancel on; the goal is told of it whenever it has not ended."""
+    def cancel(self, handle: Any) -> bool:  # noqa: ANN401  # rclpy's
+        """Pass a cancel on; return whether the goal has not ended yet."""
         goal = self._begun.get(bytes(handle.goal_id.uuid))
         if goal is not None:
             self._crossing.post(self._handler.cancel, goal)
+        return goal is not None
 
     def feed_back(self, handle: Any, fields: Fields) -> None:  # noqa: ANN401  # rclpy's
         """Publish feedback, and return at once."""
         self._sender.send(self._action, partial(self._publish, handle), fields)
 
-    def end(self, handle: Any, end: GoalEnd, fields: Fields) -> None:  # noqa: ANN401  # rclpy's
+    def end(self, handle: Any, end: GoalOutcome, fields: Fields) -> None:  # noqa: ANN401  # rclpy's
         """End a goal with a result, and return at once."""
         result = self._kind.Result()
         fill(result, fields)
@@ -112,7 +113,7 @@ class ActionGoals(Generic[GoalT]):
         if not self._crossing.closed:
             handle.publish_feedback(feedback)
 
-    def _finish(self, handle: Any, end: GoalEnd, result: Message) -> None:  # noqa: ANN401
+    def _finish(self, handle: Any, end: GoalOutcome, result: Message) -> None:  # noqa: ANN401
         del self._begun[bytes(handle.goal_id.uuid)]
         self._room.release()
         try:
@@ -134,7 +135,7 @@ class _Goal(Generic[GoalT]):
         """Publish feedback."""
         self._goals.feed_back(self._handle, feedback)
 
-    def end(self, end: GoalEnd, result: Fields) -> None:
+    def end(self, end: GoalOutcome, result: Fields) -> None:
         """End the goal."""
         self._goals.end(self._handle, end, result)
 

@@ -8,7 +8,8 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
-from domain.goal_server import GoalEnd
+from domain.controller import GoalOutcome
+from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
 
 PickedT = TypeVar("PickedT")
@@ -77,6 +78,7 @@ class Lane(Enum):
     LIVELINESS = "liveliness"
     TARGETS = "targets"
     SENSORS = "sensors"
+    NAVIGATION = "navigation"
     GATEWAY = "gateway"
 
 
@@ -103,6 +105,20 @@ class Client(Protocol):
         """
         ...
 
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Send a request of thousands of fields, and return the response.
+
+        To fill and to send it takes a tenth of a second, which is spent on another thread.
+
+        Args:
+            make: Returns its fields; called on another thread.
+            within_s: Timeout once it was sent, s.
+
+        Raises:
+            TimeoutError: There was no response in time; the fate of the request is unknown.
+        """
+        ...
+
 
 class Publisher(Protocol):
     """A publisher of a topic."""
@@ -114,6 +130,10 @@ class Publisher(Protocol):
         """
         ...
 
+    def has_subscribers(self) -> bool:
+        """Tell whether the graph knows a subscription that the messages reach."""
+        ...
+
 
 class AcceptedGoal(Protocol):
     """A goal of a client of ours that has not ended."""
@@ -122,7 +142,7 @@ class AcceptedGoal(Protocol):
         """Publish feedback, and return at once."""
         ...
 
-    def end(self, end: GoalEnd, result: Fields) -> None:
+    def end(self, end: GoalOutcome, result: Fields) -> None:
         """End the goal with a result, and return at once; call it once.
 
         `CANCELED` is for a goal whose client asked for that.
@@ -313,6 +333,14 @@ class RosGraph(Protocol):
 
         Raises:
             UnknownTypeError: The type is not installed.
+        """
+        ...
+
+    async def look(self) -> Sequence[GraphFault]:
+        """Look at some of our topics, and return what is known to be wrong in the graph now.
+
+        Each call looks at other topics, so that none is looked at for long. A process that was
+        killed stays in the graph for some 20 s.
         """
         ...
 

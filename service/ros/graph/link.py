@@ -24,19 +24,19 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import (
     DurabilityPolicy,
     LivelinessPolicy,
+    QoSCompatibility,
     QoSProfile,
     ReliabilityPolicy,
+    qos_check_compatible,
     qos_profile_parameter_events,
 )
 from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
-from rosidl_generator_py.import_type_support_impl import (
-    UnsupportedTypeSupport,
-)
+from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
+from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
 from service.ros.graph.action_goals import ActionGoals
-from service.ros.graph.answers import answer_within
 from service.ros.graph.conversion import fill, find_type, require_field
 from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
 from service.ros.graph.domain_id import check_domain
@@ -56,6 +56,8 @@ from service.ros.graph.graph import (
 )
 from service.ros.graph.header import begins_with_header, stamp_in
 from service.ros.graph.sending import Sender, Turnstile, send_or_tell
+from service.ros.graph.service_client import ServiceClient
+from service.ros.graph.survey import End, Survey
 
 _PROFILES = {
     Qos.EVENTS: QoSProfile(depth=100),
@@ -69,6 +71,8 @@ _SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
 # Each event handler slows down every wait of a lane.
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+_GOALS = {True: GoalResponse.ACCEPT, False: GoalResponse.REJECT}
+_CANCELS = {True: CancelResponse.ACCEPT, False: CancelResponse.REJECT}
 _LIVELINESS_DEPTH = 8
 _ARRIVALS_DEPTH = 5
 _LOOK_S = 1.0
@@ -104,6 +108,8 @@ class RosLink:
         """Passes messages to the event loop; once it is closed, nothing is sent any more either."""
         self.sender = Sender()
         self.turnstile = Turnstile(_REQUESTS_AT_ONCE)
+        self.survey = Survey(_why_silent)
+        """Knows our topics, and what is wrong with them."""
         self._spinners: dict[Lane, _Spinner] = {}
         self._nodes: list[Any] = []
         self._failed = asyncio.Event()
@@ -152,6 +158,12 @@ class RosLink:
             publisher.publish(drive_message(command, type_name, wheelbase_m))
 
         return DriveProcess(topic, type_name, wheelbase_m, publish, node=f"{owner}_drive")
+
+    async def look(self) -> Sequence[GraphFault]:
+        """Look at some of our topics, and return what is known to be wrong in the graph now."""
+        if not self._nodes or self.crossing.closed:
+            return ()
+        return await asyncio.to_thread(self.survey.look, self._nodes[0])
 
     async def wait_failed(self) -> None:
         """Wait until a lane fails.
@@ -241,14 +253,16 @@ class _Node:
         self._spinner = spinner
         self._node = node
 
-    def client(self, service: str, type_name: str) -> "_Client":
+    def client(self, service: str, type_name: str) -> ServiceClient:
         """Return a client."""
         kind = _find_type(type_name)
-        return _Client(self._link, self._node, kind, self._node.create_client(kind, service))
+        client = self._node.create_client(kind, service)
+        return ServiceClient(self._link.crossing, self._link.turnstile, self._node, kind, client)
 
     def publisher(self, topic: str, type_name: str, qos: Qos) -> "_Publisher":
         """Return a publisher."""
         kind = _find_type(type_name)
+        self._link.survey.add(End(topic, type_name, _PROFILES[qos], publishes=True))
         publisher = self._node.create_publisher(
             kind, topic, _PROFILES[qos], event_callbacks=_NO_PUBLISHER_EVENTS
         )
@@ -266,6 +280,7 @@ class _Node:
         """Subscribe to a topic while the link is open."""
         kind = _find_type(type_name)
         profile = _PROFILES[qos]
+        self._link.survey.add(End(topic, type_name, profile, publishes=False))
         inbox = Inbox(self._link.crossing, topic, pick, take, profile.depth)
         self._node.create_subscription(kind, topic, inbox.hear, profile, event_callbacks=_NO_EVENTS)
 
@@ -323,25 +338,16 @@ class _Node:
         """Offer an action while the link is open."""
         kind, link = _find_type(type_name), self._link
         goals = ActionGoals(link.crossing, link.sender, action, kind, handler, self._spinner.do)
-
-        def judge(request: Message) -> GoalResponse:
-            return GoalResponse.ACCEPT if goals.judge(request) else GoalResponse.REJECT
-
-        def cancel(handle: Any) -> CancelResponse:  # noqa: ANN401
-            goals.cancel(handle)
-            return CancelResponse.ACCEPT
-
-        goals.attach(
-            ActionServer(
-                self._node,
-                kind,
-                action,
-                _nothing,
-                goal_callback=judge,
-                handle_accepted_callback=goals.accept,
-                cancel_callback=cancel,
-            )
+        server = ActionServer(
+            self._node,
+            kind,
+            action,
+            _nothing,
+            goal_callback=lambda goal: _GOALS[goals.judge(goal)],
+            handle_accepted_callback=goals.accept,
+            cancel_callback=lambda handle: _CANCELS[goals.cancel(handle)],
         )
+        goals.attach(server)
 
 
 class _ArrivalWatch:
@@ -385,48 +391,6 @@ class _ArrivalWatch:
             self._subscription = self._subscribe()
 
 
-class _Client:
-    """A `Client` of rclpy."""
-
-    def __init__(self, link: RosLink, node: Any, kind: Any, client: Any) -> None:  # noqa: ANN401
-        self._crossing = link.crossing
-        self._turnstile = link.turnstile
-        self._node = node
-        self._kind = kind
-        self._client = client
-
-    def is_ready(self) -> bool:
-        """Tell whether the graph knows a server."""
-        return not self._crossing.closed and bool(self._client.service_is_ready())
-
-    def servers(self) -> int:
-        """Return how many servers the graph knows."""
-        if self._crossing.closed:
-            return 0
-        return int(self._node.count_services(self._client.service_name))
-
-    async def call(self, request: Fields, within_s: float) -> Message:
-        """Send a request, and return the response.
-
-        Raises:
-            TimeoutError: There was none in time, or the link is closed.
-            InvalidValueError: The fields do not fit the request type of the service.
-        """
-        message = self._kind.Request()
-        fill(message, request)
-        await self._turnstile.wait_for_turn()
-        if self._crossing.closed:
-            raise TimeoutError("the link to ROS 2 is closed")
-        response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
-        asked = self._client.call_async(message)
-        # Awaiting the future of rclpy would busy-wait.
-        asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
-        try:
-            return await answer_within(response, within_s)
-        finally:
-            self._client.remove_pending_request(asked)
-
-
 class _Publisher:
     """A `Publisher` of rclpy."""
 
@@ -460,6 +424,10 @@ class _Publisher:
         else:
             self._sender.send(self._topic, self._send, message)
 
+    def has_subscribers(self) -> bool:
+        """Tell whether the graph knows a subscription."""
+        return not self._crossing.closed and self._publisher.get_subscription_count() > 0
+
     def _send(self, message: Fields) -> None:
         filled = self._kind()
         fill(filled, message)
@@ -477,9 +445,13 @@ def _find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS
     return kind
 
 
-def _settle(response: asyncio.Future[Message], message: Message) -> None:
-    if not response.done():
-        response.set_result(message)
+def _why_silent(offered: QoSProfile, requested: QoSProfile) -> str:
+    """Return why a subscription hears nothing of a publisher; empty: it does."""
+    compatibility, reason = qos_check_compatible(offered, requested)
+    # Of pybind11, whose values are made anew.
+    if compatibility != QoSCompatibility.ERROR:
+        return ""
+    return str(reason).removeprefix("ERROR: ").rstrip("; ")
 
 
 def _nothing(*_: object) -> None:

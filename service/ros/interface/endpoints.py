@@ -54,6 +54,9 @@ class OfferedTopic:
     """As in `OfferedService`."""
     latched: bool
     """Whether a late subscriber gets the last message (transient local)."""
+    on_demand: bool = False
+    """Whether the gateway listens only while somebody subscribes in ROS 2: making a message costs
+    something."""
 
 
 @dataclass(frozen=True, slots=True)

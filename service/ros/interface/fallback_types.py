@@ -109,6 +109,15 @@ def _stamp(fields: Mapping[str, Any]) -> str:
     return f"{stamp['sec']}.{stamp['nanosec']:09d}"
 
 
+def _named_file(fields: Fields) -> Fields:
+    """Read the only text that a request has."""
+    return {"file": fields["load_namespace"]}
+
+
+def _task_answer(fields: Fields) -> Fields:
+    return {"success": fields["success"], "message": fields["message"] or fields["task"]}
+
+
 SERVICE_FALLBACKS: Mapping[str, ServiceFallback] = {
     "system_modes_msgs/srv/ChangeMode": ServiceFallback(
         "lifecycle_msgs/srv/ChangeState", _asked_mode, _as_it_is
@@ -119,8 +128,11 @@ SERVICE_FALLBACKS: Mapping[str, ServiceFallback] = {
     "system_modes_msgs/srv/GetAvailableModes": ServiceFallback(
         "lifecycle_msgs/srv/GetAvailableStates", _no_fields, _available_modes
     ),
+    "pilothouse_msgs/srv/StartTask": ServiceFallback(
+        "diagnostic_msgs/srv/AddDiagnostics", _named_file, _task_answer
+    ),
 }
-"""By the native type."""
+"""By the native type. No standard type holds waypoints and has an answer."""
 
 TOPIC_FALLBACKS: Mapping[str, TopicFallback] = {
     "system_modes_msgs/msg/ModeEvent": TopicFallback(

@@ -17,12 +17,15 @@ from service.ros.interface.endpoints import (
     OfferedTopic,
     SubscribedTopic,
 )
+from service.ros.interface.overlay import PATH, Overlay
 from service.ros.interface.part_topics import PartTopics
 from service.ros.interface.reading_topics import reading_topics
 from service.ros.interface.robot_topics import RobotTopics
 from service.ros.interface.services import LifecycleServices, ModeServices, robot_services
 from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
+from service.ros.interface.task_services import TaskServices
 from service.supervisor import Supervisor
+from service.worker import InlineJobs, Jobs
 
 log = logging.getLogger(__name__)
 
@@ -36,25 +39,33 @@ class RosInterface:
     """Services and topics of all parts and of the robot, and the subscribed topics."""
 
     def __init__(
-        self, supervisor: Supervisor, settings: InterfaceSettings = USUAL_SETTINGS
+        self,
+        supervisor: Supervisor,
+        settings: InterfaceSettings = USUAL_SETTINGS,
+        jobs: Jobs | None = None,
     ) -> None:
         """Prepare.
 
         Args:
             supervisor: Of the robot.
             settings: Of the robot file.
+            jobs: Do what would keep the event loop; None: it is done here.
         """
         self._supervisor = supervisor
+        self.parts = supervisor.model.parts
+        """Names of the parts, in the order of the model."""
         self._listeners = Listeners()
         self._part_topics = PartTopics(supervisor, self._listeners)
         self._robot_topics = RobotTopics(supervisor, self._listeners, settings.messages)
-        parts = supervisor.model.parts
+        self._overlay = Overlay(supervisor, self._listeners, settings.frame_id)
         services = chain(
-            *(LifecycleServices(supervisor, part).offered() for part in parts),
-            *(ModeServices(supervisor, part).offered() for part in parts),
+            *(LifecycleServices(supervisor, part).offered() for part in self.parts),
+            *(ModeServices(supervisor, part).offered() for part in self.parts),
             robot_services(supervisor),
+            TaskServices(supervisor, settings.folder, jobs or InlineJobs()).offered(),
         )
-        topics = chain(self._part_topics.offered(), self._robot_topics.offered())
+        offering = (self._part_topics, self._robot_topics, self._overlay)
+        topics = chain.from_iterable(each.offered() for each in offering)
         self.services: Mapping[str, OfferedService] = {
             service.name: audited(supervisor, service) if service.writes else service
             for service in services
@@ -74,10 +85,13 @@ class RosInterface:
             take: Must return at once and not raise. For a latched topic it gets the last message,
                 if there is one, before this function returns.
         """
-        last = self._part_topics.last(topic) if self.topics[topic].latched else None
+        last = self._last(topic) if self.topics[topic].latched else None
         if last is not None:
             take(last)
         return self._listeners.add(topic, take)
+
+    def _last(self, topic: str) -> Fields | None:
+        return self._overlay.last() if topic == PATH else self._part_topics.last(topic)
 
     async def run(self) -> None:
         """Publish messages about events and states to the listeners, until cancelled.
@@ -95,6 +109,7 @@ class RosInterface:
             while True:
                 await self._tell_events(reader)
                 self._robot_topics.take(frames)
+                self._overlay.take(frames)
                 await changed.wait()
                 changed.clear()
 

@@ -30,6 +30,8 @@ from domain.events.driving import (
     HoldReleaseRequested,
     HoldRequested,
     HoldSet,
+    NavigationAvailable,
+    NavigationUnavailable,
     TaskAborted,
     TaskCanceled,
     TaskCancelRequested,
@@ -93,6 +95,8 @@ from domain.events.reactions import (
     ReactionWouldAct,
 )
 from domain.events.service import (
+    GraphFaultEnded,
+    GraphFaultFound,
     NotRestored,
     ServiceRestored,
     ServiceStalled,
@@ -171,6 +175,8 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     ),
     "drive.available": (DriveAvailable(),),
     "drive.unavailable": (DriveUnavailable(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "navigation.available": (NavigationAvailable(),),
+    "navigation.unavailable": (NavigationUnavailable(reason="the controller gave no feedback"),),
     "emergency_stop.engaged": (EmergencyStopEngaged(reason='Größe ≤ 3 — "gripper\\jam"'),),
     "emergency_stop.peer_engaged": (
         PeerStopEngaged(
@@ -317,6 +323,8 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
+    "ros.fault": (GraphFaultFound(fault="qos", name="/scan", reason="best effort publisher"),),
+    "ros.fault_ended": (GraphFaultEnded(fault="duplicate", name="/left/arm"),),
     "service.not_restored": (NotRestored(what="node left/arm", reason="not in the model"),),
     "service.restored": (
         ServiceRestored(

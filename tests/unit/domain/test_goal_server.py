@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from domain.commands import Drive
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
 from domain.goal_server import (
     REPLACED,
-    GoalEnd,
     GoalEnded,
     GoalMessage,
     GoalProgress,
@@ -109,7 +109,7 @@ def test_a_goal_is_driven_to_its_end_and_succeeds_at_standstill(controller: str)
     begun = road.begin(goal())
     road.stay(20)
 
-    assert road.ends() == [GoalEnded(begun, GoalEnd.SUCCEEDED)]
+    assert road.ends() == [GoalEnded(begun, GoalOutcome.SUCCEEDED)]
     assert road.x_m == pytest.approx(20.0, abs=0.5)
     assert road.speed_mps == 0.0
     assert road.last_command_mps() == 0.0
@@ -157,7 +157,7 @@ def test_a_goal_that_begins_too_far_away_is_aborted_and_says_so() -> None:
     begun = road.begin(goal())
 
     [ended] = road.ends()
-    assert (ended.goal, ended.end) == (begun, GoalEnd.ABORTED)
+    assert (ended.goal, ended.end) == (begun, GoalOutcome.ABORTED)
     assert "5 m" in ended.message
     assert road.last_command_mps() == 0.0
 
@@ -181,7 +181,7 @@ def test_a_goal_that_was_canceled_goes_on_from_its_target_index(
     second = road.begin(goal(40.0, start_index=index, spacing_m=spacing_m))
     road.stay(25)
 
-    assert road.ends() == [GoalEnded(second, GoalEnd.SUCCEEDED)]
+    assert road.ends() == [GoalEnded(second, GoalOutcome.SUCCEEDED)]
     assert road.progress()[0].progress == pytest.approx(stood_at_m / 40.0, abs=0.03)
     assert min(each.target_index for each in road.progress()) == index
     assert road.x_m == pytest.approx(40.0, abs=0.5)
@@ -193,7 +193,7 @@ def test_a_goal_goes_on_from_its_last_waypoint() -> None:
     begun = road.begin(goal(20.0, start_index=20))
     road.stay(10)
 
-    assert road.ends() == [GoalEnded(begun, GoalEnd.SUCCEEDED)]
+    assert road.ends() == [GoalEnded(begun, GoalOutcome.SUCCEEDED)]
     assert road.x_m == pytest.approx(20.0, abs=0.5)
 
 
@@ -211,7 +211,7 @@ def test_a_cancel_commands_speed_0_at_once_and_ends_the_goal_at_standstill() -> 
     assert road.speed_mps > 2.0
     assert road.ends() == []
     road.stay(3)
-    assert road.ends() == [GoalEnded(begun, GoalEnd.CANCELED, "canceled")]
+    assert road.ends() == [GoalEnded(begun, GoalOutcome.CANCELED, "canceled")]
     assert road.speed_mps == 0.0
 
 
@@ -242,7 +242,7 @@ def test_a_vehicle_that_does_not_stop_aborts_a_canceled_goal() -> None:
         road.server.report(VehicleReport(moving), road.now)
         road.act()
 
-    assert road.ends() == [GoalEnded(begun, GoalEnd.ABORTED, "the vehicle does not stop")]
+    assert road.ends() == [GoalEnded(begun, GoalOutcome.ABORTED, "the vehicle does not stop")]
     assert road.last_command_mps() == 0.0
 
 
@@ -272,7 +272,7 @@ def test_a_newer_goal_replaces_the_one_before_without_a_stop() -> None:
     road.begin(goal(100.0, start_index=index))
     road.stay(2)
 
-    assert road.ends() == [GoalEnded(old, GoalEnd.ABORTED, REPLACED)]
+    assert road.ends() == [GoalEnded(old, GoalOutcome.ABORTED, REPLACED)]
     speeds = [m.command.speed_mps for m in road.told if isinstance(m, Drive)]
     assert min(speeds) > 2.0
 
@@ -286,7 +286,7 @@ def test_a_goal_that_is_being_canceled_ends_as_canceled_when_it_is_replaced() ->
     new = road.begin(goal(100.0, start_index=road.progress()[-1].target_index))
     road.stay(5)
 
-    assert road.ends() == [GoalEnded(old, GoalEnd.CANCELED, REPLACED)]
+    assert road.ends() == [GoalEnded(old, GoalOutcome.CANCELED, REPLACED)]
     assert road.server.goal == new
     assert road.speed_mps > 2.0
 
@@ -302,7 +302,7 @@ def test_without_odometry_a_goal_is_aborted_and_nothing_but_speed_0_is_commanded
     begun = road.begin(goal())
     road.stay(5)
 
-    ended = GoalEnded(begun, GoalEnd.ABORTED, "no pose of the vehicle for 0.3 s")
+    ended = GoalEnded(begun, GoalOutcome.ABORTED, "no pose of the vehicle for 0.3 s")
     assert road.ends() == [ended]
     assert {m.command.speed_mps for m in road.told if isinstance(m, Drive)} == {0.0}
     assert road.server.wake_at() is None
@@ -317,7 +317,7 @@ def test_odometry_that_falls_silent_stops_the_vehicle_before_that_is_told() -> N
     road.stay(0.5)
 
     [ended] = road.ends()
-    assert (ended.goal, ended.end) == (begun, GoalEnd.ABORTED)
+    assert (ended.goal, ended.end) == (begun, GoalOutcome.ABORTED)
     before = road.told[road.told.index(ended) - 1]
     assert isinstance(before, Drive)
     assert before.command.speed_mps == 0.0
@@ -332,7 +332,7 @@ def test_odometry_that_falls_silent_during_a_cancel_is_told() -> None:
     road.odometry = False
     road.stay(0.5)
 
-    assert road.ends() == [GoalEnded(begun, GoalEnd.ABORTED, "there is no pose of the vehicle")]
+    assert road.ends() == [GoalEnded(begun, GoalOutcome.ABORTED, "there is no pose of the vehicle")]
 
 
 def test_a_goal_is_aborted_when_commands_do_not_arrive() -> None:
@@ -346,8 +346,8 @@ def test_a_goal_is_aborted_when_commands_do_not_arrive() -> None:
 
     why = "commands do not arrive: the process ended"
     assert road.ends() == [
-        GoalEnded(begun, GoalEnd.ABORTED, why),
-        GoalEnded(again, GoalEnd.ABORTED, why),
+        GoalEnded(begun, GoalOutcome.ABORTED, why),
+        GoalEnded(again, GoalOutcome.ABORTED, why),
     ]
 
 
@@ -374,7 +374,7 @@ def test_an_abort_stops_the_vehicle_before_it_is_told() -> None:
     drive, ended, *_ = road.told
     assert isinstance(drive, Drive)
     assert drive.command.speed_mps == 0.0
-    assert ended == GoalEnded(begun, GoalEnd.ABORTED, "the end")
+    assert ended == GoalEnded(begun, GoalOutcome.ABORTED, "the end")
 
 
 def test_an_abort_without_a_goal_does_nothing() -> None:

@@ -55,6 +55,7 @@ DECLARED = {
     "pilothouse_msgs/msg/Waypoint.msg": ["float64 x_m", "float64 y_m", "float64 yaw_rad"],
     "pilothouse_msgs/srv/StartTask.srv": [
         "string file",
+        "uint64 start_index",
         "string controller",
         "float64 speed_mps",
         "---",

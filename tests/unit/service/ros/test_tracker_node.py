@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from domain.goal_server import GoalEnd
+from domain.controller import GoalOutcome
 from domain.navigation import NavigationSettings
 from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import Plant, VehicleSettings
@@ -112,7 +112,7 @@ async def test_a_goal_is_driven_with_feedback_to_its_result() -> None:
         goal = street.send()
         await street.stay(20)
 
-    assert goal.ended == (GoalEnd.SUCCEEDED, {"success": True, "message": ""})
+    assert goal.ended == (GoalOutcome.SUCCEEDED, {"success": True, "message": ""})
     assert goal.feedback[-1]["target_index"] == 20
     assert goal.feedback[-1]["progress"] == pytest.approx(1.0, abs=0.05)
     assert street.commanded_mps == 0.0
@@ -125,7 +125,7 @@ async def test_a_cancel_stops_the_vehicle_and_ends_the_goal_as_canceled() -> Non
         goal.cancel()
         await street.stay(3)
 
-        assert goal.ended == (GoalEnd.CANCELED, {"success": False, "message": "canceled"})
+        assert goal.ended == (GoalOutcome.CANCELED, {"success": False, "message": "canceled"})
         assert street.speed_mps == 0.0
 
 
@@ -137,7 +137,7 @@ async def test_the_cancel_of_another_goal_changes_nothing() -> None:
         await street.stay(2)
 
         assert old.ended is not None
-        assert old.ended[0] is GoalEnd.ABORTED
+        assert old.ended[0] is GoalOutcome.ABORTED
         assert new.ended is None
         assert street.speed_mps > 1.0
 
@@ -168,7 +168,7 @@ async def test_without_odometry_a_goal_is_aborted_and_says_so() -> None:
         await street.stay(0.2)
 
     assert goal.ended is not None
-    assert goal.ended[0] is GoalEnd.ABORTED
+    assert goal.ended[0] is GoalOutcome.ABORTED
     assert "no pose" in goal.ended[1]["message"]
     assert street.commanded_mps == 0.0
 
@@ -179,7 +179,7 @@ async def test_at_the_end_the_vehicle_is_stopped_and_the_goal_aborted() -> None:
         await street.stay(4)
         assert street.speed_mps > 2.0
 
-    assert goal.ended == (GoalEnd.ABORTED, {"success": False, "message": "the tracker ends"})
+    assert goal.ended == (GoalOutcome.ABORTED, {"success": False, "message": "the tracker ends"})
     assert street.speed_mps == 0.0
 
 

@@ -7,7 +7,9 @@ import pytest
 from fastapi import FastAPI
 
 from domain.actor import Actor
+from domain.controller import NavigationStatus
 from domain.findings import Finding
+from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.inputs import (
     DriveStatus,
     EmergencyStopRequest,
@@ -144,10 +146,21 @@ async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
     assert (await warnings(http))["NO_POSE"] == "the vehicle never reported a pose"
     async with running(supervisor):
         assert "NO_POSE" not in await warnings(http)
-        backend.set_vehicle_reporting(False)
+        backend.set_vehicle_fault("silent")
         await clock.advance(1)
 
         assert (await warnings(http))["NO_POSE"] == "no pose of the vehicle for 0.3 s"
+
+
+async def test_a_controller_that_is_gone_is_a_warning(
+    http: httpx.AsyncClient, live: tuple[Supervisor, SimulatedBackend]
+) -> None:
+    supervisor, _ = live
+    supervisor.deliver(NavigationStatus(available=False, reason="the controller is gone"))
+    assert (await warnings(http))["NO_CONTROLLER"] == "the controller is gone"
+    supervisor.deliver(NavigationStatus(available=True))
+
+    assert "NO_CONTROLLER" not in await warnings(http)
 
 
 async def test_a_vehicle_that_cannot_be_commanded_is_a_warning(
@@ -159,3 +172,25 @@ async def test_a_vehicle_that_cannot_be_commanded_is_a_warning(
     supervisor.deliver(DriveStatus(available=True))
 
     assert "NO_DRIVE" not in await warnings(http)
+
+
+@pytest.mark.parametrize(
+    ("kind", "code"),
+    [
+        (GraphFaultKind.QOS, "ROS_QOS"),
+        (GraphFaultKind.TYPE, "ROS_TYPE"),
+        (GraphFaultKind.DUPLICATE, "ROS_DUPLICATE_NODE"),
+    ],
+)
+async def test_what_is_wrong_in_the_ros_graph_is_a_warning(
+    http: httpx.AsyncClient,
+    live: tuple[Supervisor, SimulatedBackend],
+    kind: GraphFaultKind,
+    code: str,
+) -> None:
+    supervisor, _ = live
+    supervisor.deliver(GraphFault(kind, "/scan", "not as it should be"))
+    assert (await warnings(http))[code] == "/scan: not as it should be"
+    supervisor.deliver(GraphFault(kind, "/scan"))
+
+    assert code not in await warnings(http)

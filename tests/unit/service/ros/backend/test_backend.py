@@ -4,6 +4,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.commands import AskTransition, Drive
+from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.inputs import (
     BackendStatus,
     DriveStatus,
@@ -83,6 +84,14 @@ async def test_nodes_are_heard_and_told(robot: Listening) -> None:
 
     assert robot.of(NodeAnswer) == [NodeAnswer(1, BASE, True)]
     assert len(robot.of(NodeReport)) == 2
+
+
+async def test_what_is_wrong_in_the_graph_is_told(robot: Listening) -> None:
+    fault = GraphFault(GraphFaultKind.QOS, "/estop", "no message of /button arrives")
+    robot.graph.faults.append(fault)
+    await robot.clock.advance(1.0)
+
+    assert robot.of(GraphFault) == [fault]
 
 
 async def test_signals_are_heard(robot: Listening) -> None:

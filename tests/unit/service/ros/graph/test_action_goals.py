@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
-from domain.goal_server import GoalEnd
 from service.ros.graph.action_goals import MAX_GOALS, ActionGoals
 from service.ros.graph.crossing import Crossing
 from service.ros.graph.graph import AcceptedGoal, Fields
@@ -115,7 +115,7 @@ class Bench:
         await until(lambda: len(self.driver.begun) == self.count)
         return handle
 
-    def end(self, end: GoalEnd, result: Fields) -> None:
+    def end(self, end: GoalOutcome, result: Fields) -> None:
         self.driver.begun[-1][1].end(end, result)
 
 
@@ -133,7 +133,7 @@ async def test_a_goal_is_executing_until_its_driver_ends_it(bench: Bench) -> Non
 
     assert bench.driver.begun[0][0] == 7
     assert handle.status == "executing"
-    bench.end(GoalEnd.SUCCEEDED, {"progress": 1.0})
+    bench.end(GoalOutcome.SUCCEEDED, {"progress": 1.0})
     assert handle.status == "succeeded"
     assert bench.server.results == {handle.goal_id.uuid: 1.0}
 
@@ -149,19 +149,19 @@ async def test_feedback_reaches_the_client(bench: Bench) -> None:
 async def test_a_cancel_reaches_the_driver_who_ends_the_goal(bench: Bench) -> None:
     handle = await bench.send()
 
-    bench.goals.cancel(handle)
+    assert bench.goals.cancel(handle)
     handle.status = "canceling"
     await until(lambda: bench.driver.canceled == [bench.driver.begun[0][1]])
-    bench.end(GoalEnd.CANCELED, {})
+    bench.end(GoalOutcome.CANCELED, {})
 
     assert handle.status == "canceled"
 
 
-async def test_a_cancel_of_a_goal_that_has_ended_is_left_aside(bench: Bench) -> None:
+async def test_a_cancel_of_a_goal_that_has_ended_is_rejected(bench: Bench) -> None:
     handle = await bench.send()
-    bench.end(GoalEnd.ABORTED, {})
+    bench.end(GoalOutcome.ABORTED, {})
 
-    bench.goals.cancel(handle)
+    assert not bench.goals.cancel(handle)
     await bench.send()
 
     assert bench.driver.canceled == []
@@ -173,7 +173,7 @@ async def test_a_goal_that_rclpy_cannot_end_gets_its_result_all_the_same(
     caplog.set_level(logging.INFO)
     handle = await bench.send()
 
-    bench.end(GoalEnd.CANCELED, {"progress": 0.5})
+    bench.end(GoalOutcome.CANCELED, {"progress": 0.5})
 
     assert bench.server.results == {handle.goal_id.uuid: 0.5}
     assert "invalid transition" in caplog.text
@@ -200,7 +200,7 @@ async def test_more_goals_than_can_wait_are_rejected_until_one_ends(
 
     assert not bench.goals.judge(1)
     assert f"{MAX_GOALS} have not ended" in caplog.text
-    bench.end(GoalEnd.ABORTED, {})
+    bench.end(GoalOutcome.ABORTED, {})
     assert bench.goals.judge(1)
 
 

@@ -46,6 +46,17 @@ def test_modes_are_listed_as_states() -> None:
     }
 
 
+def test_a_task_is_asked_for_by_the_only_text_of_a_request() -> None:
+    carrier = SERVICE_FALLBACKS["pilothouse_msgs/srv/StartTask"]
+
+    assert carrier.type == "diagnostic_msgs/srv/AddDiagnostics"
+    assert carrier.request({"load_namespace": "loop.csv"}) == {"file": "loop.csv"}
+    taken = carrier.response({"success": True, "message": "", "task": "t3"})
+    assert taken == {"success": True, "message": "t3"}
+    refused = carrier.response({"success": False, "message": "no such file", "task": ""})
+    assert refused == {"success": False, "message": "no such file"}
+
+
 def test_a_mode_event_is_a_transition_between_labels() -> None:
     carrier = TOPIC_FALLBACKS["system_modes_msgs/msg/ModeEvent"]
 
