@@ -52,7 +52,7 @@ class DrivenRobot:
 
     async def until_stands(self) -> None:
         async def is_so() -> bool:
-            return abs((await self.robot.get("/vehicle"))["speed_mps"]) < 0.05
+            return bool(abs((await self.robot.get("/vehicle"))["speed_mps"]) < 0.05)
 
         await until(is_so, POLL_S)
 

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -14,17 +13,11 @@ from typing import IO
 
 import httpx
 
+from tests.support.container import free_port
 from tests.support.shared import PROJECT
 
 FOLDER = PROJECT / "docker"
 PATIENCE_S = 60.0
-
-
-def free_port() -> int:
-    """Return a port that nobody listens on."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        port: int = listener.getsockname()[1]
-        return port
 
 
 def environment(more: dict[str, str]) -> dict[str, str]:

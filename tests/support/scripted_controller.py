@@ -23,6 +23,7 @@ from domain.simulation.vehicle_settings import VehicleSettings
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant, seconds
 from domain.vehicle import COMMAND_VALID_FOR, VehicleLimits
+from service.codec.recorded_step import RecordedStep, recorded_step
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 
@@ -161,6 +162,8 @@ class ControlledRobot(CoreRobot):
     ) -> None:
         self._settings = settings or ControllerSettings(ACTION)
         self._stopped_at: Instant | None = None
+        self.taken: list[RecordedStep] = []
+        """Each input, and what followed from it."""
         super().__init__(SmhModel({}, {}), vehicle=vehicle)
         self.read(**GOOD)
         if is_there:
@@ -171,19 +174,14 @@ class ControlledRobot(CoreRobot):
         self, model: SmhModel, start: Instant, settings: SupervisionSettings | None
     ) -> Onboard:
         """Return a core whose goals go to the controller."""
-        settings = settings or SupervisionSettings()
-        core = Supervision(model, settings, start)
-        watch = core.driving.watch
-        navigation = ExternalNavigation(
-            settings.vehicle, NavigationSettings(), self._settings, watch, start
-        )
-        onboard = Onboard(core, navigation)
+        onboard = make_controlled(model, start, settings, self._settings)
         self.controller = ScriptedController(onboard)
         return onboard
 
     def give(self, given: Input) -> Outputs:
         """Hand one input to the core, and what it asks to the vehicle and the controller."""
         outputs = self.onboard.handle(given, self.now)
+        self.taken.append(recorded_step(self.now, given, False, outputs))
         self.events += outputs.events
         for command in outputs.commands:
             self.commands.append(command)
@@ -244,3 +242,22 @@ class ControlledRobot(CoreRobot):
         stopped_at = self._stopped_at
         if stopped_at is None or self.now - stopped_at >= COMMAND_VALID_FOR:
             self.robot.vehicle.drive(command.command, self.now)
+
+
+def make_controlled(
+    model: SmhModel,
+    start: Instant = 0,
+    settings: SupervisionSettings | None = None,
+    controller: ControllerSettings | None = None,
+) -> Onboard:
+    """Return a core whose goals go to a controller."""
+    settings = settings or SupervisionSettings()
+    core = Supervision(model, settings, start)
+    navigation = ExternalNavigation(
+        settings.vehicle,
+        NavigationSettings(),
+        controller or ControllerSettings(ACTION),
+        core.driving.watch,
+        start,
+    )
+    return Onboard(core, navigation)

@@ -1,6 +1,6 @@
 """Work on the waypoints of a service call: reading a file, and checking those in a request.
 
-100,000 waypoints take some 0.3 s, which is not for the event loop.
+100,000 waypoints take a second, which is not for the event loop.
 """
 
 from collections.abc import Sequence

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from domain.actor import Actor
-from domain.errors import InvalidValueError
+from domain.errors import InvalidValueError, UnknownProcessError
 from domain.external_navigation import ExternalNavigation
 from domain.inputs import Reading, Readings, TaskRequest, TimePassed, VehicleReport
 from domain.navigation import Navigation
@@ -11,7 +11,7 @@ from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleState
 from service.files.robot_file import RobotSettings
 from service.onboard_parts import make_onboard
-from tests.support.models import actuation_model
+from tests.support.models import ARM, BASE, actuation_model
 
 MODEL = actuation_model()
 START = seconds(50.0)
@@ -92,3 +92,18 @@ def test_tasks_are_judged_as_the_settings_say(
             onboard.handle(task(begins_at_m, speed_mps), START)
     else:
         assert onboard.handle(task(begins_at_m, speed_mps), START).task is not None
+
+
+def test_each_computer_runs_the_processes_of_its_own_nodes() -> None:
+    process = {"process": {"command": ["node"]}}
+    said: dict[str, object] = {
+        "nodes": {"drive_base": process, "manipulator": process},
+        "devices": {"arm": {"parts": ["manipulator"]}},
+    }
+    supervisor = make_onboard(MODEL, settings(**said), START).core
+    device = make_onboard(MODEL, settings(**said, device="arm"), START).core
+
+    assert supervisor.processes.view(BASE).node == BASE
+    with pytest.raises(UnknownProcessError):
+        supervisor.processes.view(ARM)
+    assert device.processes.view(ARM).node == ARM

@@ -231,12 +231,17 @@ def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
     [
         "signals: {estop: {topic: /e, type: gone_msgs/msg/Stop, field: pressed}}",
         "command: {topic: /c, type: ackermann_msgs/msg/AckermannDrive}",
+        "navigation: {action: /go, type: nav2_msgs/action/FollowPath}",
     ],
 )
 def test_a_type_that_the_robot_file_names_has_to_be_there(
     robot: Path, topics: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    absent = ("gone_msgs/msg/Stop", "ackermann_msgs/msg/AckermannDrive")
+    absent = (
+        "gone_msgs/msg/Stop",
+        "ackermann_msgs/msg/AckermannDrive",
+        "nav2_msgs/action/FollowPath",
+    )
     link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock(), absent))
     monkeypatch.setitem(sys.modules, LINK, link)
     robot.write_text(f"ros2: {{{topics}}}\n")
@@ -252,6 +257,16 @@ def test_a_field_that_the_robot_file_names_has_to_be_there(robot: Path) -> None:
 
     with pytest.raises(UnknownFieldError, match="has no field no_such_field; it has data"):
         composed(ServeOptions(robot=robot, backend="ros2"))
+
+
+@pytest.mark.usefixtures("_ros")
+def test_goals_go_to_the_controller_that_the_robot_file_names(robot: Path) -> None:
+    robot.write_text("ros2: {navigation: {action: /go}}\n")
+    composition = composed(ServeOptions(robot=robot, backend="ros2"))
+
+    assert composition.supervisor.navigation is not None
+    composition.supervisor.let_pass()
+    assert "navigation" in composition.supervisor.core.driving.holds
 
 
 def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
@@ -328,3 +343,31 @@ def test_a_robot_of_one_computer_has_no_link(robot: Path) -> None:
 
     assert composition.supervisor.link is None
     assert composition.place is None
+
+
+PROCESS = "nodes: {drive_base: {process: {command: [base]}}}\n"
+
+
+def test_programs_of_simulated_nodes_are_not_run_and_that_is_told(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text(PROCESS)
+
+    assert composed(ServeOptions(robot=robot)).supervisor.processes is None
+    assert "`process` of the robot file has no effect" in caplog.text
+
+
+@pytest.mark.usefixtures("_ros")
+def test_programs_of_real_nodes_are_run(robot: Path) -> None:
+    robot.write_text(PROCESS)
+
+    assert composed(ServeOptions(robot=robot, backend="ros2")).supervisor.processes is not None
+    robot.write_text("nodes: {drive_base: {}}\n")
+    assert composed(ServeOptions(robot=robot, backend="ros2")).supervisor.processes is None
+
+
+def test_what_is_simulated_can_be_given_faults() -> None:
+    faults = composed(ServeOptions()).supervisor.live_faults
+
+    assert faults is not None
+    assert set(faults.node_faults) == {"drive_base", "manipulator"}

@@ -1,5 +1,6 @@
 import os
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -45,6 +46,19 @@ def test_the_greeting_of_a_real_robot_says_so(
     assert f"ROS 2: domain {domain}. Nodes are real" in told
     assert "Simulated: signals.\n" in told
     assert "Nothing here moves" not in told
+
+
+def test_the_greeting_says_which_programs_end_with_the_service(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock()))
+    monkeypatch.setitem(sys.modules, "service.ros.graph.link", link)
+    file = tmp_path / "robot.yaml"
+    file.write_text("nodes: {drive_base: {process: {command: [base]}}}\n")
+
+    told = greeting(ServeOptions(backend="ros2", robot=file))
+
+    assert "programs that it runs end with it, and other nodes stay as they are." in told
 
 
 def test_without_ros_2_the_service_ends_with_what_to_do_about_it(

@@ -21,7 +21,7 @@ def told(*messages: Report) -> list[tuple[int, ...] | None]:
     pieces = Pieces()
     wholes = [pieces.add(message) for message in messages]
     return [
-        None if whole is None else tuple(ITEMS.index(item) for item in whole.items)  # type: ignore[arg-type]
+        None if whole is None else tuple(ITEMS.index(item) for item in whole.items)
         for whole in wholes
     ]
 
