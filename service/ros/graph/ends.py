@@ -1,0 +1,155 @@
+"""Clients, publishers and subscriptions over those of rclpy, which are given; imports no ROS."""
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+from service.ros.graph.answers import answer_within
+from service.ros.graph.conversion import fill
+from service.ros.graph.crossing import Crossing
+from service.ros.graph.graph import Fields, Message
+from service.ros.graph.sending import Sender, Turnstile, send_or_tell
+
+DRAINED = 50
+"""Most messages of a topic that are taken in one go; then other topics have their turn."""
+
+
+class Drain:
+    """Takes all messages of a topic that have arrived, whenever rclpy takes one.
+
+    rclpy takes one message of a topic, and then waits again for all topics, which takes longer than
+    the message.
+    """
+
+    def __init__(self, kind: Any, hear: Callable[[Message], None]) -> None:  # noqa: ANN401
+        """Prepare; `attach` connects it to the subscription whose callback is `hear`.
+
+        Args:
+            kind: Type of the messages.
+            hear: Gets each message.
+        """
+        self._kind = kind
+        self._hear = hear
+        self._handle: Any = None
+
+    def attach(self, subscription: Any) -> None:  # noqa: ANN401  # of rclpy
+        """Take further messages from this subscription."""
+        self._handle = subscription.handle
+
+    def hear(self, message: Message) -> None:
+        """Take a message, and those that have arrived with it."""
+        self._hear(message)
+        # The receiving thread may be faster than the call that makes the subscription.
+        for _ in range(DRAINED if self._handle is not None else 0):
+            with self._handle:
+                taken = self._handle.take_message(self._kind, False)
+            if taken is None:
+                return
+            self._hear(taken[0])
+
+
+class LinkClient:
+    """A `Client` of rclpy."""
+
+    def __init__(
+        self,
+        crossing: Crossing,
+        turnstile: Turnstile,
+        node: Any,  # noqa: ANN401
+        kind: Any,  # noqa: ANN401
+        client: Any,  # noqa: ANN401
+    ) -> None:
+        """Prepare.
+
+        Args:
+            crossing: Passes responses on; nothing is sent once it is closed.
+            turnstile: Where requests wait for their turn.
+            node: Of rclpy, which has the client.
+            kind: Type of the service.
+            client: Of rclpy.
+        """
+        self._crossing = crossing
+        self._turnstile = turnstile
+        self._node = node
+        self._kind = kind
+        self._client = client
+
+    def is_ready(self) -> bool:
+        """Tell whether the graph knows a server."""
+        return not self._crossing.closed and bool(self._client.service_is_ready())
+
+    def servers(self) -> int:
+        """Return how many servers the graph knows."""
+        if self._crossing.closed:
+            return 0
+        return int(self._node.count_services(self._client.service_name))
+
+    async def call(self, request: Fields, within_s: float) -> Message:
+        """Send a request, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time, or the link is closed.
+            InvalidValueError: The fields do not fit the request type of the service.
+        """
+        await self._turnstile.wait_for_turn()
+        message = self._kind.Request()
+        fill(message, request)
+        if self._crossing.closed:
+            raise TimeoutError("the link to ROS 2 is closed")
+        response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
+        asked = self._client.call_async(message)
+        # Awaiting the future of rclpy would busy-wait.
+        asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
+        try:
+            return await answer_within(response, within_s)
+        finally:
+            self._client.remove_pending_request(asked)
+
+
+class LinkPublisher:
+    """A `Publisher` of rclpy."""
+
+    def __init__(
+        self,
+        crossing: Crossing,
+        kind: Any,  # noqa: ANN401
+        publisher: Any,  # noqa: ANN401
+        topic: str,
+        sender: Sender | None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            crossing: Nothing is sent once it is closed.
+            kind: Type of the messages.
+            publisher: Of rclpy.
+            topic: For the log.
+            sender: Thread that sends the messages; None: `publish` sends them itself.
+        """
+        self._crossing = crossing
+        self._kind = kind
+        self._publisher = publisher
+        self._topic = topic
+        self._sender = sender
+
+    def publish(self, message: Fields) -> None:
+        """Publish a message."""
+        if self._sender is None:
+            send_or_tell(self._topic, self._send, message)
+        else:
+            self._sender.send(self._topic, self._send, message)
+
+    def has_subscribers(self) -> bool:
+        """Tell whether the graph knows a subscription."""
+        return not self._crossing.closed and self._publisher.get_subscription_count() > 0
+
+    def _send(self, message: Fields) -> None:
+        filled = self._kind()
+        fill(filled, message)
+        if not self._crossing.closed:
+            self._publisher.publish(filled)
+
+
+def _settle(response: asyncio.Future[Message], message: Message) -> None:
+    if not response.done():
+        response.set_result(message)
