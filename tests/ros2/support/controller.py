@@ -25,7 +25,7 @@ LIES_AT_M = ARRIVES_AT_M = 5.0
 FAR = 50
 
 
-class Controller(Node):  # type: ignore[misc]  # rclpy has no types
+class Controller(Node):
     """Drives straight on, at the speed of the goal."""
 
     def __init__(self, manners: str) -> None:
