@@ -36,7 +36,8 @@ async def test_a_goal_is_canceled_and_goes_on_from_its_target_index(
 
         assert ended == ("succeeded", "")
         indices = [index for index, _ in on.client.of("second", "feedback")]
-        assert min(indices) == reached
+        # The vehicle may have passed one more while its last feedback was on its way.
+        assert min(indices) in (reached, reached + 1)
         assert on.client.of("second", "feedback")[-1][1] == pytest.approx(1.0, abs=0.05)
         assert on.watch.pose == pytest.approx((15.0, 0.0), abs=0.5)
         await on.watch.stands()
