@@ -11,7 +11,7 @@ from domain.timebase import Instant, seconds
 from service.clock import Clock
 from service.ports import BackendMessage, Deliver
 
-_AT_ONCE = 5
+_AT_ONCE = 3
 """Messages delivered before other tasks of the event loop run."""
 _SOURCE = "ROS nodes"
 _TELL_EVERY = seconds(0.1)

@@ -17,9 +17,10 @@ from service.ros.graph.graph import Fields, Message
 MAX_UNANSWERED = 32
 """Most unanswered requests to one of our services; further ones get an empty response."""
 
-POSTS_AT_ONCE = 8
+POSTS_AT_ONCE = 4
 """Most calls from other threads in one pass of the event loop. Fifty nodes answer at the same time,
-and what follows from an answer takes a tenth of a millisecond and more."""
+and what follows from an answer takes a tenth of a millisecond and more, and twice as long while a
+lane wants the interpreter."""
 
 _CANCEL_S = 0.5
 _AT_ONCE = 20

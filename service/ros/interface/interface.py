@@ -29,7 +29,6 @@ from service.worker import InlineJobs, Jobs
 
 log = logging.getLogger(__name__)
 
-_AT_ONCE = 10
 _TURN = seconds(0.001)
 """Time for converting events in one pass of the event loop, since a change of a thousand nodes
 produces events faster than a fixed small number per pass can handle."""
@@ -115,16 +114,27 @@ class RosInterface:
 
     async def _tell_events(self, reader: EventReader) -> None:
         clock, missed = self._supervisor.clock, False
-        while reader.is_behind:
+        while reader.is_behind or self._part_topics.has_unsent:
             ends_at = clock.now() + _TURN
-            while reader.is_behind and clock.now() < ends_at:
-                for event in reader.take(_AT_ONCE):
-                    if isinstance(event, Gap):
-                        log.warning("missed events %d to %s", event.first, event.last)
-                        missed = True
-                    else:
-                        self._part_topics.take(event)
+            while clock.now() < ends_at:
+                if self._part_topics.has_unsent:
+                    self._part_topics.send_next()
+                elif reader.is_behind:
+                    missed = self._take_next(reader) or missed
+                else:
+                    break
             if missed and not reader.is_behind:
                 self._part_topics.catch_up()
                 missed = False
             await asyncio.sleep(0)
+
+    def _take_next(self, reader: EventReader) -> bool:
+        """Publish the next event; return whether events before it were missed."""
+        missed = False
+        for event in reader.take(1):
+            if isinstance(event, Gap):
+                log.warning("missed events %d to %s", event.first, event.last)
+                missed = True
+            else:
+                self._part_topics.take(event)
+        return missed

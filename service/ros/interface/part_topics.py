@@ -7,6 +7,7 @@ in that mode, on that for modes, else on that for transitions. So of the last me
 topics, the one with the later timestamp is in force.
 """
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -54,6 +55,8 @@ class PartTopics:
         self._listeners = listeners
         self._requests: dict[str, _Request] = {}
         """The last request on each topic; its message is made when it is needed."""
+        self._unsent: deque[tuple[str, _Request]] = deque()
+        """Requests that are still to be published: one for a system concerns all its nodes."""
         self._targets: dict[PartName, StateAndMode] = {}
         """The targets as published last."""
         self._actuals: dict[PartName, StateAndMode] = {}
@@ -73,8 +76,19 @@ class PartTopics:
                     latched=kind in _LATCHED,
                 )
 
+    @property
+    def has_unsent(self) -> bool:
+        """Tell whether a request is still to be published."""
+        return bool(self._unsent)
+
+    def send_next(self) -> None:
+        """Publish the next request; there must be one."""
+        topic, request = self._unsent.popleft()
+        if self._listeners.hears(topic):
+            self._listeners.send(topic, self._message(topic, request))
+
     def take(self, event: RecordedEvent) -> None:
-        """Publish what an event means for parts, if anything."""
+        """Publish what an event means for parts, if anything; requests follow by `send_next`."""
         match event.event:
             case PartActualChanged(part, actual, was):
                 self._tell_step(part, was, actual, event.at)
@@ -138,8 +152,7 @@ class PartTopics:
                 self._send_request(self._note(part, view.target, at))
 
     def _send_request(self, topic: str) -> None:
-        if self._listeners.hears(topic):
-            self._listeners.send(topic, self._message(topic, self._requests[topic]))
+        self._unsent.append((topic, self._requests[topic]))
 
     def _note_request(self, request: ChangeRequested, at: Instant) -> list[str]:
         """Store the request for a part and all parts below it, and return the topics concerned."""

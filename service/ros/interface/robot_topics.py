@@ -41,7 +41,7 @@ class RobotTopics:
     def offered(self) -> tuple[OfferedTopic, ...]:
         """Return the topics."""
         return tuple(
-            OfferedTopic(name, type_name, OWN_NODE, of_a_node=False, latched=False)
+            OfferedTopic(name, type_name, OWN_NODE, False, False, on_demand=name == DIAGNOSTICS)
             for name, type_name in self._types.items()
         )
 

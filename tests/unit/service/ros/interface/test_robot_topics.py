@@ -68,6 +68,13 @@ async def test_diagnostics_come_at_once_when_the_state_of_the_robot_changes(
     assert heard[-1]["status"][0]["level"] == 2
 
 
+def test_diagnostics_are_made_on_demand_only() -> None:
+    topics = RosRobot().interface.topics
+
+    assert topics["/diagnostics"].on_demand
+    assert not topics["/system_state"].on_demand
+
+
 def test_all_are_of_the_own_node_and_nothing_is_latched() -> None:
     topics = RosRobot().interface.topics
 
