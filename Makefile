@@ -24,6 +24,8 @@ NOT_OF_ROS := env -u _ROS_WHEELS_BOOTSTRAP_COMPLETE -u AMENT_PREFIX_PATH -u LD_L
 # measure time.
 PARALLEL := --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 ARGS ?=
+# What `make test-image` builds: `pilothouse link ros2 dev` are all.
+IMAGES ?= pilothouse
 # The tests start a hundred processes. Where the environment forbids bytecode, each would compile its
 # source anew.
 export PYTHONDONTWRITEBYTECODE :=
@@ -62,9 +64,9 @@ pytest: $(INSTALLED_DEV) ## the tests; one of them with ARGS=tests/unit/test_str
 	@$(BIN)/pytest -rs $(or $(ARGS),$(PARALLEL))
 
 test-image: $(INSTALLED_DEV) ## build the image and test it in a container; needs root
-	@$(BIN)/hadolint docker/Dockerfile docker/Dockerfile.dev
-	@bash docker/build_here.sh
-	@$(BIN)/pytest -rs -m image tests/image $(ARGS)
+	@$(BIN)/hadolint docker/Dockerfile*
+	@bash docker/build_here.sh $(IMAGES)
+	@bash docker/with_podman_here.sh $(BIN)/pytest -rs -m image tests/image $(ARGS)
 
 # The wheels of ROS 2 are for this platform only.
 ifeq ($(shell uname -sm),Linux x86_64)
@@ -100,7 +102,7 @@ bench: $(INSTALLED_DEV) ## run the benchmarks, with other software for compariso
 
 bench-ros2: $(INSTALLED_ROS2) ## run the benchmarks with fifty real ROS 2 nodes, and write docs/benchmarks.md
 	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -s -p no:cacheprovider -m bench --timeout=0 \
-	  tests/bench/bench_ros2.py tests/bench/bench_ros2_estop.py \
+	  tests/bench/bench_ros2.py tests/bench/bench_ros2_estop.py tests/bench/bench_ros2_states.py \
 	  tests/bench/bench_ros2_topics.py $(ARGS); \
 	  code=$$?; $(ROS2)/bin/python -m tests.support.bench_document && exit $$code
 

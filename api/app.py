@@ -31,6 +31,7 @@ from api.simulation import route as simulations
 from api.simulation.simulation_job import SimulatedParts
 from api.streaming import frame_jobs, frames_route
 from service.forked_call import ForkedCallError, forked_call
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from service.supervisor import Supervisor
 from service.worker import Worker
 
@@ -47,6 +48,8 @@ def create_app(
     access: Access | None = None,
     limits: ServiceLimits = USUAL_LIMITS,
     simulated: SimulatedParts | None = None,
+    interface: InterfaceSettings = USUAL_SETTINGS,
+    worker: Worker | None = None,
 ) -> FastAPI:
     """Return the application; it starts no task and no process.
 
@@ -63,13 +66,15 @@ def create_app(
         access: Whom it lets in; None: everybody.
         limits: How much may be asked of it.
         simulated: What a simulation can go on with a copy of; None: the robot is real.
+        interface: What is offered to clients of rosbridge.
+        worker: Of `make_worker`; it is closed with the others. None: a new one.
     """
-    worker = Worker([model_jobs.__name__, task_jobs.__name__])
+    worker = worker or make_worker()
     app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
     app.state.replayer = Worker([frame_jobs.__name__], deadline_s=REPLAY_DEADLINE_S)
     app.state.rosbridge_clients = make_rosbridge_clients(
-        supervisor, limits.requests_per_s, app.state.stream_server
+        supervisor, interface, worker, limits.requests_per_s, app.state.stream_server
     )
     app.state.simulated = simulated
     app.state.copying = asyncio.Lock()
@@ -79,6 +84,11 @@ def create_app(
     app.include_router(rosbridge.router)
     _guard(app, supervisor, allowed_hosts, allowed_origins or AllowedOrigins())
     return app
+
+
+def make_worker() -> Worker:
+    """Return what does the work on models and waypoints; its process starts with the first job."""
+    return Worker([model_jobs.__name__, task_jobs.__name__])
 
 
 def _guard(

@@ -1,14 +1,22 @@
 #!/usr/bin/env bash
-# Builds the image on a machine without a container engine or access to an image registry: with
+# Builds images on a machine without a container engine or access to an image registry: with
 # buildah, on a base that debootstrap makes once. Used by `make test-image`; docs/how-to/deploy.md
-# explains how to build it elsewhere.
+# explains how to build them elsewhere.
+#
+#     docker/build_here.sh [IMAGE...]
+#
+#   pilothouse   docker/Dockerfile; the default
+#   link         the same with LINK=1
+#   ros2         docker/Dockerfile.ros2, on a base with the wheels of ROS 2 instead of a distribution
+#   dev          docker/Dockerfile.dev
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 CACHE="${XDG_CACHE_HOME:-$HOME/.cache}/pilothouse"
 SUITE=bookworm
 BASE="localhost/pilothouse-base:$SUITE"
-IMAGE=localhost/pilothouse
+# Named by what it is made from, so that another list of wheels makes another base.
+BASE_ROS2="localhost/pilothouse-base:ros2-$(sha256sum docker/Dockerfile.ros2-base | head -c 12)"
 
 if [ "$(id -u)" -ne 0 ]; then
     echo "Image not built: buildah needs root here."
@@ -29,9 +37,24 @@ fi
 mkdir -p "$CACHE"
 exec 9>"$CACHE/lock"
 flock 9
-images() { buildah --storage-driver vfs --root "$CACHE/images" --runroot "$CACHE/run" "$@"; }
 WORK=$(mktemp -d)
 trap 'rm -rf "$WORK"' EXIT
+
+# Which storage there is depends on the kernel and the file system: `vfs` works everywhere, and copies
+# whole images. Also read by with_podman_here.sh and tests/support/container.py.
+mkdir "$WORK"/{lower,upper,work,merged}
+DRIVER=vfs
+if unshare --mount mount -t overlay -o \
+    "lowerdir=$WORK/lower,upperdir=$WORK/upper,workdir=$WORK/work" none "$WORK/merged" 2>/dev/null; then
+    DRIVER=overlay
+fi
+cat > "$CACHE/storage.conf" <<END
+[storage]
+driver = "$DRIVER"
+graphroot = "$CACHE/storage-$DRIVER"
+runroot = "$CACHE/run-$DRIVER"
+END
+export CONTAINERS_STORAGE_CONF="$CACHE/storage.conf"
 
 # Prints what a step does, and its output if it fails.
 quietly() {
@@ -46,22 +69,47 @@ make_base() {
         "$SUITE" "$WORK/root" &&
     tar -C "$WORK/root" --exclude='./var/cache/apt/*' --exclude='./var/lib/apt/lists/*' \
         -cf "$WORK/root.tar" . &&
-    container=$(images from scratch) &&
-    images add "$container" "$WORK/root.tar" / &&
-    images commit --format docker --rm "$container" "$BASE"
+    container=$(buildah from scratch) &&
+    buildah add "$container" "$WORK/root.tar" / &&
+    buildah commit --format docker --rm "$container" "$BASE"
 }
 
+# Builds an image: its name, its Dockerfile, its base, and arguments of buildah.
 build() {
-    local more=()
+    local more=(--build-arg "BASE=$3" "${@:4}")
     # For pip, if this machine has its own certificates.
     [ ! -d /etc/ssl/certs ] || more+=(--volume /etc/ssl/certs:/etc/ssl/certs:ro)
-    images bud --isolation chroot --format docker --build-arg "BASE=$BASE" "${more[@]}" \
-        --tag "$IMAGE" --file docker/Dockerfile .
+    buildah bud --isolation chroot --format docker "${more[@]}" --tag "$1" --file "docker/$2" .
 }
 
-if ! images inspect --type image "$BASE" >/dev/null 2>&1; then
-    quietly "Making the base of the image, once" make_base
-fi
-quietly "Building the image" build
-# Removes the previous image of this name.
-images rmi --prune >/dev/null
+has() { buildah inspect --type image "$1" >/dev/null 2>&1; }
+
+has "$BASE" || quietly "Making the base of the images, once" make_base
+for image in "${@:-pilothouse}"; do
+    case "$image" in
+        pilothouse)
+            quietly "Building the image" build localhost/pilothouse Dockerfile "$BASE"
+            ;;
+        link)
+            quietly "Building the image with the link" \
+                build localhost/pilothouse-link Dockerfile "$BASE" --build-arg LINK=1
+            ;;
+        ros2)
+            has "$BASE_ROS2" || quietly "Making the base of the image for ROS 2, once" \
+                build "$BASE_ROS2" Dockerfile.ros2-base "$BASE"
+            quietly "Building the image for ROS 2" \
+                build localhost/pilothouse-ros2 Dockerfile.ros2 "$BASE_ROS2"
+            ;;
+        dev)
+            # As run_dev.sh names it for root, for whom nothing is adapted.
+            quietly "Building the development image" \
+                build localhost/pilothouse-dev:0 Dockerfile.dev "$BASE"
+            ;;
+        *)
+            echo "${0##*/}: no image is named '$image': pilothouse, link, ros2, dev" >&2
+            exit 2
+            ;;
+    esac
+done
+# Removes the previous images of these names.
+buildah rmi --prune >/dev/null

@@ -46,12 +46,14 @@ NOT_OF_THE_ENVIRONMENT = shutil.ignore_patterns(
     "activate*",
     "include",
     "tests",
-    # Build tools of numpy, and those of its packages that it loads only when asked for.
+    # Build tools of numpy, and those of its packages that it loads only when asked for. Not `ma`:
+    # np.unique, and with it np.quantile, asks for it.
     "distutils",
     "f2py*",
     "fft",
-    "ma",
+    "mrecords.py",
     "polynomial",
+    "testing",
     # Modules of C that only the tests of numpy import.
     "_*_tests.*.so",
     "_simd.*.so",

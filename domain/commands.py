@@ -121,6 +121,21 @@ class TellReaction:
     """Idle, acting or exhausted."""
 
 
+@dataclass(frozen=True, slots=True)
+class StartProcess:
+    """Start the process of a node; whoever runs it reports that it runs, or why it does not."""
+
+    node: PartName
+
+
+@dataclass(frozen=True, slots=True)
+class StopProcess:
+    """End the process of a node, as politely as its time allows; its end is reported."""
+
+    node: PartName
+
+
 NodeCommand: TypeAlias = AskTransition | AskParameters | AskFacts
 LinkCommand: TypeAlias = TellStops | AskRelease | AnswerOrder | ActAlone | TellReaction
-Command: TypeAlias = NodeCommand | Drive | SendGoal | PreemptGoal | LinkCommand
+ProcessCommand: TypeAlias = StartProcess | StopProcess
+Command: TypeAlias = NodeCommand | Drive | SendGoal | PreemptGoal | LinkCommand | ProcessCommand

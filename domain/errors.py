@@ -14,6 +14,7 @@
     |   +-- UnknownEventError
     |   +-- UnknownControllerError
     |   +-- UnknownDeviceError
+    |   +-- UnknownProcessError
     +-- InvalidValueError             a value that is never valid: type, range, NaN
     |   +-- FarStartError             a path that begins too far from the vehicle
     +-- InvalidModelError             a model file with findings
@@ -27,6 +28,7 @@
     |   +-- OwnedBySupervisorError
     |   +-- OfflineError
     |   +-- ActsElsewhereError
+    |   +-- ProcessElsewhereError
     +-- BackendUnavailableError       the backend is down: no node can be reached
     +-- StorageDegradedError          storage cannot be written, or not be read
 
@@ -184,6 +186,17 @@ class UnknownDeviceError(UnknownNameError):
     """An unknown device: the robot file has none of this name."""
 
     code = "UNKNOWN_DEVICE"
+
+
+class UnknownProcessError(UnknownNameError):
+    """A node without a process: the robot file has none of it, or another computer runs it."""
+
+    code = "UNKNOWN_PROCESS"
+
+    def __init__(self, node: str, known: Sequence[str]) -> None:
+        super().__init__("process of", node, known)
+        self.message = f"the robot file has no process of {node} on this computer"
+        self.args = (self.message,)
 
 
 class InvalidValueError(PilothouseError):
@@ -364,6 +377,15 @@ class ActsElsewhereError(RefusedError):
     def __init__(self, reaction: str, device: str) -> None:
         super().__init__(f"reaction {reaction} acts on device {device}, whatever is said here")
         self.hint = f"arm or acknowledge it on the page of {device}"
+
+
+class ProcessElsewhereError(RefusedError):
+    """A request about a process where nothing runs processes."""
+
+    code = "PROCESS_NOT_RUN_HERE"
+
+    def __init__(self, node: str) -> None:
+        super().__init__(f"the process of {node} is not run here: the nodes are simulated")
 
 
 class BackendUnavailableError(PilothouseError):

@@ -7,6 +7,7 @@ from typing import TypeAlias
 from domain.actor import NOBODY, Actor
 from domain.commands import NodeCommand
 from domain.computers import ComputerName, DeviceState, Incarnation, PeerStop, Session, StopId
+from domain.controller import ControllerMessage, NavigationStatus
 from domain.findings import Fact
 from domain.graph_terms import GraphFault
 from domain.identifiers import ChangeId, GoalId
@@ -14,6 +15,7 @@ from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
+from domain.process_terms import ProcessReport, ProcessRequest
 from domain.reaction_terms import Arm, ReactionState
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant, seconds
@@ -135,10 +137,10 @@ class GoalFeedback:
     """Distance along the path, from its first waypoint to the vehicle."""
     cross_track_error_m: float
     """Positive: the vehicle is left of the path."""
-    lookahead: Point
-    """The point that the tracker steers to."""
-    command: DriveCommand
-    """The drive command of the same control step."""
+    lookahead: Point | None
+    """The point that the tracker steers to; None: an external controller drives."""
+    command: DriveCommand | None
+    """The drive command of the same control step; None: an external controller drives."""
     left_out_m: float = 0.0
     """Length of the path behind the vehicle that it never came near, in m."""
 
@@ -457,12 +459,15 @@ Input: TypeAlias = (
     | SourceFault
     | VehicleReport
     | DriveStatus
+    | ProcessReport
     | BackendStatus
     | StorageStatus
     | GraphFault
     | ReportBacklog
     | GoalFeedback
     | GoalResult
+    | ControllerMessage
+    | NavigationStatus
     | TimePassed
     | ServiceStall
     | WriteRecord
@@ -475,6 +480,7 @@ Input: TypeAlias = (
     | AcknowledgeReactionRequest
     | ShelveRequest
     | UnshelveRequest
+    | ProcessRequest
     | DriveRequest
     | DeviceStatus
     | SupervisorStatus

@@ -277,6 +277,25 @@ class KeptBound:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptProcess:
+    """How the process of a node stands, if that is more than that it may run."""
+
+    node: PartName
+    is_stopped: bool = False
+    """Somebody asked for its end."""
+    given_up: str = ""
+    """How it ended when it was given up, in words; empty: it was not."""
+    ages: tuple[Duration, ...] = ()
+    """How long ago it was started, when this was kept: while the service is down, no time
+    passes."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.node
+
+
+@dataclass(frozen=True, slots=True)
 class KeptTask:
     """A task as it was submitted; its progress is kept apart, since that changes often."""
 
@@ -339,6 +358,7 @@ Kept: TypeAlias = (
     | KeptHold
     | KeptReaction
     | KeptBound
+    | KeptProcess
     | KeptTask
     | KeptProgress
 )

@@ -21,6 +21,7 @@ from domain.inputs import (
     UnshelveRequest,
 )
 from domain.lifecycle import Transition
+from domain.process_terms import ProcessAction, ProcessRequest
 
 _RAISING = frozenset({Transition.CONFIGURE, Transition.ACTIVATE})
 
@@ -47,6 +48,8 @@ def may_loosen(given: Input, *, is_stopped: bool, holds: Collection[str]) -> boo
             return owner in holds
         case TransitionRequest(transition=transition):
             return transition in _RAISING
+        case ProcessRequest(action=action):
+            return action is not ProcessAction.STOP
         case TaskRequest() | AcknowledgeRequest() | ShelveRequest():
             return True
         case ArmRequest() | AcknowledgeReactionRequest():

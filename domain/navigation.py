@@ -35,7 +35,8 @@ from domain.tasks.kept_tasks import LOST_AT_MOST
 from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.tracking.coverage import Coverage
-from domain.tracking.leg import GivenUpError, Leg, LegLimits
+from domain.tracking.leg import Leg
+from domain.tracking.line_watch import GivenUpError, LegLimits
 from domain.tracking.pace import PERIOD, Pace
 from domain.tracking.pure_pursuit import PurePursuit
 from domain.tracking.slow_down import SlowDown, is_slow
@@ -71,6 +72,15 @@ class NavigationSettings:
         if self.max_cross_track_m is not None:
             return self.max_cross_track_m
         return near_path_m(limits)
+
+    def leg_limits(self, limits: VehicleLimits) -> LegLimits:
+        """Return when a vehicle is given up that does not follow its line."""
+        return LegLimits(
+            self.cross_track_m(limits),
+            self.max_cross_track_for,
+            self.no_progress_for,
+            self.least_progress_m,
+        )
 
 
 _LEAST_END_TOLERANCE_M = 0.05
@@ -144,12 +154,7 @@ class Navigation:
             limits, settings.speed, near_m, vehicle.settings.max_start_distance_m
         )
         """From where paths are approached, and how."""
-        self._leg_limits = LegLimits(
-            near_m,
-            settings.max_cross_track_for,
-            settings.no_progress_for,
-            settings.least_progress_m,
-        )
+        self._leg_limits = settings.leg_limits(limits)
         self._run: _Run | None = None
         self._preempted: _Run | None = None
         """The goal that was preempted last: what is known of its path still holds."""
@@ -224,7 +229,7 @@ class Navigation:
         run = self._run
         if run is None or run.next_at > now:
             return ()
-        self.skip_missed(now)
+        self._skip_missed(now)
         try:
             return self._stop(run, now) if run.is_preempted else self._control(run, now)
         except GivenUpError as error:
@@ -233,7 +238,15 @@ class Navigation:
                 return ()
             return (GoalResult(run.goal.goal, succeeded=False, reason=str(error)),)
 
-    def skip_missed(self, now: Instant) -> None:
+    def catch_up(self, now: Instant) -> tuple[NavigationMessage, ...]:
+        """Do as `advance` does, while what is due is late by our own fault."""
+        if self._vehicle.fresh_state(now) is None:
+            # The pose is old by our own fault: that is no reason to give up a goal.
+            self._skip_missed(now)
+            return ()
+        return self.advance(now)
+
+    def _skip_missed(self, now: Instant) -> None:
         """Do the next control step after `now`, at a time of the same raster."""
         run = self._run
         if run is not None and run.next_at <= now:

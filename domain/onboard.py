@@ -1,12 +1,14 @@
 """Connects supervision and navigation.
 
-One input in; commands to nodes and vehicle, and events, out. Goals stay inside, so that a hold
-stops the vehicle in the same step.
+One input in; commands to nodes, vehicle and, if there is one, an external controller, and events,
+out. Whoever drives, a hold stops the vehicle in the same step.
 """
 
 from collections.abc import Sequence
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
+from domain.controller import ControllerMessage
+from domain.external_navigation import ExternalNavigation
 from domain.inputs import Input, TimePassed
 from domain.navigation import Navigation
 from domain.outbox import Outputs
@@ -20,7 +22,7 @@ class Onboard:
     At one instant, deadlines of the core come first, then the control step, then the input.
     """
 
-    def __init__(self, core: Supervision, navigation: Navigation) -> None:
+    def __init__(self, core: Supervision, navigation: Navigation | ExternalNavigation) -> None:
         self.core = core
         self.navigation = navigation
         self._untold: list[Outputs] = []
@@ -82,6 +84,9 @@ class Onboard:
             self._let_navigation_act(due)
 
     def _take(self, given: Input, now: Instant, *, is_late: bool = False) -> None:
+        if isinstance(given, ControllerMessage):
+            self._take_from_controller(given, now, is_late=is_late)
+            return
         outputs = self.core.take_in(given, now) if is_late else self.core.handle(given, now)
         if not outputs.commands:
             self._untold.append(outputs)
@@ -96,13 +101,20 @@ class Onboard:
         if goals:
             self._let_navigation_act(now, is_late=is_late)
 
+    def _take_from_controller(
+        self, given: ControllerMessage, now: Instant, *, is_late: bool
+    ) -> None:
+        """Let navigation judge what an external controller says, after what the core has due."""
+        self._take(TimePassed(), now, is_late=is_late)
+        if isinstance(self.navigation, ExternalNavigation):
+            self.navigation.take(given, now)
+            self._let_navigation_act(now, is_late=is_late)
+
     def _let_navigation_act(self, now: Instant, *, is_late: bool = False) -> None:
-        if is_late and self.core.driving.watch.fresh_state(now) is None:
-            # The pose is old by our own fault: that is no reason to give up a goal.
-            self.navigation.skip_missed(now)
-            return
-        for message in self.navigation.advance(now):
-            if isinstance(message, Drive):
+        act = self.navigation.catch_up if is_late else self.navigation.advance
+        for message in act(now):
+            # Goals of an external controller leave as commands, like those to the vehicle.
+            if isinstance(message, Drive | SendGoal | PreemptGoal):
                 self._untold.append(Outputs(commands=(message,)))
             else:
                 self._take(message, now, is_late=is_late)
@@ -128,4 +140,5 @@ def _merged(parts: Sequence[Outputs]) -> Outputs:
         any(part.task_changed for part in parts),
         any(part.vehicle_changed for part in parts),
         tuple(kept for part in parts for kept in part.kept),
+        frozenset().union(*(part.devices for part in parts)),
     )

@@ -42,6 +42,7 @@ from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.processes.processes import Processes
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
 from domain.reactions.reaction import Reaction, reactions_of
@@ -95,7 +96,8 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         parts = self._parts = Parts(model, outbox, settings.device_of)
-        causes = ErrorCauses(model, settings.checkpoints, settings.nodes_of_devices)
+        checkpoints, processes = settings.checkpoints, settings.processes
+        causes = ErrorCauses(model, checkpoints, settings.nodes_of_devices, processes)
         health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox, settings.peers)
         self.driving = Driving(
@@ -113,6 +115,8 @@ class Supervision:
         # What is lost with a device follows from that from the start.
         self._devices = self._devices_by(settings, start)
         errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
+        self.processes = Processes(processes, model.nodes, errors, outbox)
+        """The processes of nodes; read only."""
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
@@ -173,6 +177,7 @@ class Supervision:
         return (
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
+            self.processes,
             # It evaluates all conditions, and so comes last of those that watch some.
             FactChanges(self.conditions, parts, self.driving, outbox),
             propagation,

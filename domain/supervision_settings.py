@@ -8,6 +8,7 @@ from domain.computers import ComputerName
 from domain.devices.settings import DeviceSettings, LeadSettings
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import SignalSettings, default_signals
+from domain.processes.settings import ProcessSettings
 from domain.reactions.settings import RuleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
@@ -26,6 +27,8 @@ class SupervisionSettings:
     rules: RuleSettings = field(default_factory=RuleSettings)
     checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
     """What is supervised of the checkpoints of nodes."""
+    processes: Mapping[PartName, ProcessSettings] = field(default_factory=dict)
+    """Nodes whose processes this computer runs, and when it starts them again."""
     lead: LeadSettings | None = None
     """Of a device, which follows a supervisor; None: this computer follows nobody."""
     devices: Mapping[ComputerName, DeviceSettings] = field(default_factory=dict)

@@ -3,9 +3,13 @@
 from collections.abc import Iterable
 
 from domain.computers import SUPERVISOR, ComputerName
+from domain.devices.settings import DeviceSettings
+from domain.external_navigation import ExternalNavigation
 from domain.navigation import Navigation
 from domain.onboard import Onboard
 from domain.parts.system_model import SmhModel
+from domain.processes.settings import ProcessSettings
+from domain.state_and_mode import PartName
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
 from service.files.computer_share import reactions_of_devices, share_of
@@ -33,6 +37,7 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         limits,
         robot.to_rule_settings(),
         checkpoints=robot.to_checkpoint_settings(),
+        processes=_own_processes(robot, devices.values()),
         peers=_peers(robot.devices, own),
         devices=devices,
         reactions_of_devices=elsewhere,
@@ -40,8 +45,20 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         lead=robot.to_lead_settings(),
     )
     core = Supervision(model, settings, start)
-    navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)
-    return Onboard(core, navigation)
+    driving, watch = robot.to_navigation_settings(), core.driving.watch
+    controller = robot.to_controller_settings()
+    if controller is None:
+        return Onboard(core, Navigation(limits, driving, watch))
+    return Onboard(core, ExternalNavigation(limits, driving, controller, watch, start))
+
+
+def _own_processes(
+    robot: RobotSettings, devices: Iterable[DeviceSettings]
+) -> dict[PartName, ProcessSettings]:
+    """Return the processes that this computer runs: a device runs those of its own nodes."""
+    elsewhere = {node for device in devices for node in device.nodes}
+    settings = robot.to_process_settings()
+    return {node: own for node, own in settings.items() if node not in elsewhere}
 
 
 def _peers(devices: Iterable[str], own: str) -> tuple[ComputerName, ...]:

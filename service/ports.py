@@ -4,11 +4,20 @@ An adapter passes every fact to `deliver` on the event loop's thread. It does no
 `deliver` raises: that ends `run`. One adapter may provide several ports.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
-from domain.commands import Drive, LinkCommand, NodeCommand
+from domain.commands import (
+    Drive,
+    LinkCommand,
+    NodeCommand,
+    PreemptGoal,
+    ProcessCommand,
+    SendGoal,
+)
 from domain.computers import ComputerName, Connection
+from domain.controller import ControllerMessage
 from domain.graph_terms import GraphFault
 from domain.inputs import (
     BackendStatus,
@@ -28,6 +37,8 @@ from domain.inputs import (
     SupervisorStatus,
     VehicleReport,
 )
+from domain.process_terms import ProcessReport
+from domain.state_and_mode import PartName
 
 BackendMessage: TypeAlias = (
     NodeReport
@@ -37,8 +48,10 @@ BackendMessage: TypeAlias = (
     | Readings
     | SourceFault
     | ErrorReport
+    | ProcessReport
     | VehicleReport
     | DriveStatus
+    | ControllerMessage
     | GraphFault
     | DeviceStatus
     | SupervisorStatus
@@ -48,6 +61,16 @@ BackendMessage: TypeAlias = (
     | ReactionReport
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessOutput:
+    """The last lines that a process of a node printed, stdout and stderr together."""
+
+    running: Sequence[str]
+    """Of the process that runs."""
+    ended: Sequence[str]
+    """Of the one that ended last."""
 
 
 class Adapter(Protocol):
@@ -94,6 +117,24 @@ class VehicleBackend(Adapter, Protocol):
         ...
 
 
+class NavigationBackend(Protocol):
+    """An external controller; `tests/conformance/test_navigation.py` specifies what is asked of it.
+
+    The adapter only carries messages; the core judges them, and every deadline. It delivers
+    `ControllerStatus` whether there is a controller, which has confirmed before that it has none of
+    our goals; of each goal one `ControllerAnswer`, `ControllerFeedback` at 25 Hz at most, and one
+    `ControllerResult`.
+    """
+
+    def send(self, command: SendGoal | PreemptGoal, /) -> None:
+        """Send a goal, or ask for its end, and return at once. Never raises.
+
+        Called on the event loop's thread. The end may be asked for several times: of a goal that
+        the controller does not have, `ControllerResult` says so.
+        """
+        ...
+
+
 class SignalSource(Adapter, Protocol):
     """A source of signal readings; it delivers `Readings`, or `SourceFault` if it has none."""
 
@@ -119,6 +160,21 @@ class ComputersLink(Adapter, Protocol):
 
         A device tells the supervisor what that says of its nodes and signals.
         """
+        ...
+
+
+class ProcessRunner(Adapter, Protocol):
+    """The processes of nodes. It delivers `ProcessReport`: first that none runs, then each change.
+
+    When `run` is cancelled, it ends them all, and returns once they have ended.
+    """
+
+    def send(self, command: ProcessCommand, /) -> None:
+        """Start or stop a process, and return at once. Never raises."""
+        ...
+
+    def output(self, node: PartName, /) -> ProcessOutput:
+        """Return what the process of a node printed; it must be one that is run here."""
         ...
 
 

@@ -20,6 +20,8 @@ from domain.commands import (
     Drive,
     PreemptGoal,
     SendGoal,
+    StartProcess,
+    StopProcess,
     TellReaction,
     TellStops,
 )
@@ -259,6 +261,10 @@ def _command_words(command: Command) -> str:
             return f"the supervisor is told that {node} {'accepts' if accepted else 'rejects'}"
         case TellReaction(reaction=reaction, state=state):
             return f"the supervisor is told that reaction {reaction} is {state}"
+        case StartProcess(node=node):
+            return f"the process of {node} is started"
+        case StopProcess(node=node):
+            return f"the process of {node} is stopped"
         case ActAlone(autonomous=autonomous):
             return f"this device {'acts' if autonomous else 'no longer acts'} on its own"
 

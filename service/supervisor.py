@@ -9,7 +9,7 @@ from contextlib import suppress
 from functools import partial
 
 from domain.actor import SERVICE
-from domain.commands import LinkCommand, PreemptGoal, SendGoal
+from domain.commands import LinkCommand, PreemptGoal, ProcessCommand, SendGoal
 from domain.computers import ComputerName, Connection
 from domain.errors import PilothouseError
 from domain.findings import Finding
@@ -20,7 +20,6 @@ from domain.parts.system_model import SmhModel
 from domain.paths.approach import ApproachLimits
 from domain.supervision import Supervision
 from domain.timebase import Duration, seconds
-from domain.vehicle import DEFAULT_FRAME
 from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
 from service.checkpoint import checkpoint_of
@@ -29,8 +28,9 @@ from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
 from service.keeper import NO_STORES, Checkpoint, Keeper, Stores, Taken
+from service.live_faults import LiveFaults
 from service.node_incidents import log_node_incidents
-from service.ports import ComputersLink, RobotBackend
+from service.ports import ComputersLink, NavigationBackend, ProcessRunner, RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
@@ -54,11 +54,18 @@ class Supervisor:
     sources: Sequence[SourceStatus] = ()
     """How the sources of its signals are doing; set by who makes them."""
 
+    navigation: NavigationBackend | None = None
+    """The external controller, which the backend runs; set by who makes it. None: the trackers on
+    board drive."""
+
     link: ComputersLink | None = None
     """The other computers of the robot, set by who makes it; None: there are none."""
 
-    frame_id = DEFAULT_FRAME
-    """Coordinate frame of poses and waypoints, as ROS names it; set by who makes it."""
+    processes: ProcessRunner | None = None
+    """Runs the processes of nodes, set by who makes it; None: there are none."""
+
+    live_faults: LiveFaults | None = None
+    """What is simulated here, set by who makes it; None: all is real, or elsewhere."""
 
     def __init__(
         self,
@@ -127,6 +134,11 @@ class Supervisor:
         return self._loaded.model
 
     @property
+    def model_name(self) -> str:
+        """Return the name of the model file; empty: not known."""
+        return self._loaded.name
+
+    @property
     def model_text(self) -> str:
         """Return the model file as it was read."""
         return self._loaded.text
@@ -171,6 +183,8 @@ class Supervisor:
         if self.link is not None:
             self._tell_stops(self.link)
             work["link"] = self.link.run(self.deliver)
+        if self.processes is not None:
+            work["processes"] = self.processes.run(self.deliver)
         if self._keeper is not None:
             work["keeper"] = self._keeper.run()
         await run_forever(work)
@@ -209,8 +223,14 @@ class Supervisor:
             if isinstance(command, LinkCommand):
                 if self.link is not None:
                     self.link.send(command)
-            # Goals are for the navigation on board; the rest is for nodes and the vehicle.
-            elif not isinstance(command, SendGoal | PreemptGoal):
+            elif isinstance(command, ProcessCommand):
+                if self.processes is not None:
+                    self.processes.send(command)
+            elif isinstance(command, SendGoal | PreemptGoal):
+                # Only with an external controller do goals leave the core.
+                if self.navigation is not None:
+                    self.navigation.send(command)
+            else:
                 self._backend.send(command)
         if self.link is not None:
             self.link.note(step.given)

@@ -1,15 +1,20 @@
 """Files that were checked, with the findings about them, and how they are shown."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 from api.cli.excerpt import excerpt
 from api.http.schemas.base import FindingJson
 from api.terminal_text import counted, finding_line, visible
+from domain.computers import ComputerName
+from domain.devices.sub_model import LeftOut
 from domain.findings import Finding
 from service.files.yaml_tree import lines_of_yaml
 
+LeftToSupervisor: TypeAlias = Mapping[ComputerName, tuple[LeftOut, ...]]
+_NOTHING: LeftToSupervisor = {}
 _HINT = "; did you mean "
 
 
@@ -28,25 +33,38 @@ class CheckedFile:
         return all(finding.severity != "error" for finding in self.findings)
 
 
-def as_text(files: Sequence[CheckedFile]) -> Iterator[str]:
-    """Yield lines for people and editors, as compilers write them; a last one sums up."""
+def as_text(files: Sequence[CheckedFile], left_out: LeftToSupervisor = _NOTHING) -> Iterator[str]:
+    """Yield lines for people and editors, as compilers write them; the last ones sum up.
+
+    Args:
+        files: That were checked.
+        left_out: What devices leave to the supervisor; that is no fault.
+    """
     for file in files:
         lines = lines_of_yaml(file.text)
         for finding in file.findings:
             yield from _told(file.name, lines, finding)
     for file in files:
         yield f"{visible(file.name)}: {_verdict(file)}"
+    for device, left in left_out.items():
+        yield f"device {device} leaves to the supervisor:"
+        yield from (visible(f"  {each.words}") for each in left)
 
 
-def as_json(files: Sequence[CheckedFile]) -> str:
-    """Return all findings as JSON, each with its file."""
+def as_json(files: Sequence[CheckedFile], left_out: LeftToSupervisor = _NOTHING) -> str:
+    """Return all findings as JSON, each with its file, and what devices leave to the supervisor."""
     findings = [
         {**FindingJson.of(finding).model_dump(), "file": file.name}
         for file in files
         for finding in file.findings
     ]
     valid = all(file.is_valid for file in files)
-    return json.dumps({"valid": valid, "findings": findings}, indent=2)
+    left = [
+        {"device": device, "what": each.what, "reason": each.reason}
+        for device, all_left in left_out.items()
+        for each in all_left
+    ]
+    return json.dumps({"valid": valid, "findings": findings, "left_out": left}, indent=2)
 
 
 def _told(name: str, lines: Sequence[str], finding: Finding) -> Iterator[str]:

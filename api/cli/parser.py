@@ -19,6 +19,7 @@ GROUPS: Mapping[str, Mapping[str, str]] = {
     "run a robot": {
         "serve": "serve.COMMAND",
         "device": "device.COMMAND",
+        "tracker": "tracker.COMMAND",
         "simulate": "simulate.COMMAND",
     },
     "act": {

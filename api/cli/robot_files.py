@@ -1,13 +1,17 @@
 """The model file and the robot file that a command was given, read and checked."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from api.cli.checked_file import CheckedFile
+from domain.computers import ComputerName
+from domain.devices.sub_model import LeftOut
 from domain.errors import InvalidModelError
 from domain.findings import Finding
 from domain.health.signals import SignalSettings, default_signals
 from domain.parts.system_model import SmhModel
+from service.files.computer_share import left_to_supervisor
 from service.files.model_file import read_model
 from service.files.robot_file import InvalidRobotFileError, read_robot_file
 from service.files.text_file import read_text_file
@@ -24,6 +28,8 @@ class RobotFiles:
     model: SmhModel | None
     """None: a file is invalid."""
     signals: tuple[SignalSettings, ...]
+    left_out: Mapping[ComputerName, tuple[LeftOut, ...]] = field(default_factory=dict)
+    """By device, what the model says about its parts and it leaves to the supervisor."""
 
 
 def read_robot_files(name: str, robot: str | None) -> RobotFiles:
@@ -52,7 +58,8 @@ def read_robot_files(name: str, robot: str | None) -> RobotFiles:
     signals = settings.to_signal_settings()
     model, findings = _read(text, signals)
     of_model, of_robot = CheckedFile(name, text, findings), CheckedFile(robot, settings_text, ())
-    return RobotFiles((of_model, of_robot), model, signals)
+    left_out = {} if model is None else left_to_supervisor(model, settings)
+    return RobotFiles((of_model, of_robot), model, signals, left_out)
 
 
 def _read(

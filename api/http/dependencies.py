@@ -93,7 +93,7 @@ def _known_device(name: str, supervisor: Supervisor) -> PartName:
 PartDep = Annotated[PartName, Depends(_part)]
 
 
-_ONLY_OF_NODES = re.compile(r"/(parameters$|checkpoints)(?=$|/)")
+_ONLY_OF_NODES = re.compile(r"/(parameters$|process$|checkpoints)(?=$|/)")
 
 _MAX_HINTED = 256
 """Characters of a path in which the name of a part is looked for."""

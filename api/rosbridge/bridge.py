@@ -13,7 +13,13 @@ from service.clock import Clock
 from service.frame_feed import FrameFeed
 from service.refused_readings import RefusedReadings
 from service.ros.interface.endpoints import Fields, OfferedService, OfferedTopic, SubscribedTopic
-from service.ros.interface.message_check import CHANGE_MODE, CHANGE_STATE, Shape
+from service.ros.interface.message_check import (
+    CHANGE_MODE,
+    CHANGE_STATE,
+    DRIVE_WAYPOINTS,
+    START_TASK,
+    Shape,
+)
 from service.ros.interface.services import CANCEL_TASKS
 
 
@@ -96,6 +102,8 @@ class Bridge:
 _REQUESTS: Mapping[str, Shape] = {
     "lifecycle_msgs/srv/ChangeState": CHANGE_STATE,
     "system_modes_msgs/srv/ChangeMode": CHANGE_MODE,
+    "pilothouse_msgs/srv/StartTask": START_TASK,
+    "pilothouse_msgs/srv/DriveWaypoints": DRIVE_WAYPOINTS,
     **{f"rosapi_msgs/srv/{name}": shape for name, shape in REQUESTS.items()},
 }
 """Fields of requests, by type of the service; those of other types are empty."""

@@ -13,7 +13,9 @@ from fastapi.requests import HTTPConnection
 from api.rosbridge.bridge import Bridge
 from api.streaming.stream_server import StreamServer
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.settings import InterfaceSettings
 from service.supervisor import Supervisor
+from service.worker import Jobs
 
 log = logging.getLogger(__name__)
 
@@ -88,16 +90,22 @@ class RosbridgeClients:
 
 
 def make_rosbridge_clients(
-    supervisor: Supervisor, calls_per_s: int, lobby: StreamServer
+    supervisor: Supervisor,
+    settings: InterfaceSettings,
+    jobs: Jobs,
+    calls_per_s: int,
+    lobby: StreamServer,
 ) -> RosbridgeClients:
     """Return the rosbridge clients of a robot.
 
     Args:
         supervisor: Of the robot.
+        settings: What is offered to them.
+        jobs: Do what would keep the event loop.
         calls_per_s: Service calls per second that one client address may make.
         lobby: As for `RosbridgeClients`.
     """
-    return RosbridgeClients(partial(_make_bridge, supervisor, calls_per_s), lobby)
+    return RosbridgeClients(partial(_make_bridge, supervisor, settings, jobs, calls_per_s), lobby)
 
 
 def rosbridge_clients(app: FastAPI) -> RosbridgeClients:
@@ -106,9 +114,11 @@ def rosbridge_clients(app: FastAPI) -> RosbridgeClients:
     return clients
 
 
-def _make_bridge(supervisor: Supervisor, calls_per_s: int) -> Bridge:
+def _make_bridge(
+    supervisor: Supervisor, settings: InterfaceSettings, jobs: Jobs, calls_per_s: int
+) -> Bridge:
     return Bridge(
-        RosInterface(supervisor),
+        RosInterface(supervisor, settings, jobs),
         supervisor.frames,
         supervisor.clock,
         calls_per_s,

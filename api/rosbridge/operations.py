@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from api.http.body_parsing import check_body, parse_json
 from domain.errors import InvalidValueError
+from service.ros.interface.message_sets import own_type
 
 _MAX_CHARACTERS = 256
 
@@ -180,8 +181,13 @@ def is_type(given: str | None, type_name: str) -> bool:
     """Tell whether a type that a client names matches `type_name`.
 
     Args:
-        given: As in ROS 2 (`std_msgs/msg/Bool`) or in ROS 1 (`std_msgs/Bool`); None or empty: any.
+        given: As in ROS 2 (`std_msgs/msg/Bool`) or in ROS 1 (`std_msgs/Bool`), in either of the
+            packages of `message_sets`; None or empty: any.
         type_name: As in ROS 2.
     """
-    package, _, rest = type_name.partition("/")
-    return not given or given in (type_name, f"{package}/{rest.rpartition('/')[2]}")
+    if not given:
+        return True
+    package, _, rest = given.partition("/")
+    folder = type_name.split("/")[1]
+    full = given if "/" in rest else f"{package}/{folder}/{rest}"
+    return own_type(full) == own_type(type_name)

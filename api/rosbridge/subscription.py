@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from api.rosbridge.replies import PublishedTexts
 from domain.timebase import Duration, Instant
 from service.ros.interface.endpoints import Fields, OfferedTopic
+from service.ros.interface.message_sets import own_type
 
 MAX_QUEUE = 100
 """Upper limit of the `queue_length` that a client requests."""
@@ -14,9 +15,9 @@ MAX_QUEUE = 100
 _SNAPSHOTS = frozenset(
     {
         "diagnostic_msgs/msg/DiagnosticArray",
-        "gem_state_msgs/msg/SystemStateStamped",
-        "gem_state_msgs/msg/TaskPlannerStatus",
         "nav_msgs/msg/Path",
+        "pilothouse_msgs/msg/SystemState",
+        "pilothouse_msgs/msg/TaskStatus",
         "visualization_msgs/msg/MarkerArray",
     }
 )
@@ -93,7 +94,7 @@ class Subscription:
     def hear(self, message: Fields) -> None:
         """Take a message of the topic."""
         pace = self._pace
-        if pace == Pace() and self._topic.type not in _SNAPSHOTS:
+        if pace == Pace() and own_type(self._topic.type) not in _SNAPSHOTS:
             self._put(self._texts.text(self._topic.name, self._named, message))
         else:
             self._waiting.append(message)

@@ -4,14 +4,15 @@ import logging
 import os
 import secrets
 from dataclasses import dataclass, replace
-from importlib import resources
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+from api.app import make_worker
 from api.distribution import installed_version
 from api.http.limits import ServiceLimits
 from api.serving.computers import make_link
 from api.serving.data_folder import MEMORY, data_folder, robot_name
+from api.serving.joining import join_graph
 from api.serving.misuse import MisuseError
 from api.simulation.simulation_job import SimulatedParts
 from domain.errors import UnknownDeviceError
@@ -21,26 +22,31 @@ from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.computer_share import ComputerShare, share_of
-from service.files.model_file import LoadedModel, load_model, with_signals
+from service.files.model_file import EXAMPLE, LoadedModel, load_model, with_signals
 from service.files.robot_file import (
     RobotSettings,
     read_robot_file,
     written_for_device,
     written_out,
+    written_with_backend,
 )
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
+from service.files.waypoint_folder import WaypointFolder
 from service.keeper import NO_STORES, Stores
 from service.link.device_end import DeviceEnd
 from service.link.place import Place, place_in
 from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ports import NodeBackend, RobotBackend, SignalSource
+from service.processes.from_settings import make_processes
 from service.ros.backend.backend import Ros2Backend
 from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.message_sets import MessageSet
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
 from service.simulation.remembering import memories_of, memory_in
@@ -54,18 +60,11 @@ from service.storage.sqlite.journal import SqliteJournal
 from service.storage.sqlite.opening import StoreSettings
 from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
+from service.worker import Worker
 
 log = logging.getLogger(__name__)
 
 BackendName: TypeAlias = Literal["simulated", "ros2"]
-
-EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
-
-_NO_ROS = (
-    "source the setup.bash of your ROS 2 distribution before you start the service, and run it with"
-    " the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
-    " pip install 'pilothouse[ros2]'"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +108,10 @@ class Composition:
     it is here."""
     place: Place | None = None
     """Where this computer is among those of the robot; None: it is the only one."""
+    interface: InterfaceSettings = USUAL_SETTINGS
+    """What is offered to ROS, and to clients of rosbridge."""
+    worker: Worker | None = None
+    """Does jobs of the gateway, and may do others; None: there is no gateway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +139,7 @@ class RobotFiles:
         """Return the part of the model that this computer runs."""
         if not self.is_device:
             return self.loaded
-        return LoadedModel(self.share.model, (), self.loaded.text)
+        return LoadedModel(self.share.model, (), self.loaded.text, self.loaded.name)
 
 
 def read_files(options: ServeOptions) -> RobotFiles:
@@ -155,15 +158,20 @@ def read_files(options: ServeOptions) -> RobotFiles:
         text = read_text_file(options.robot)
         settings = read_robot_file(text, loaded.model)
         loaded = with_signals(loaded, settings.to_signal_settings())
+        if options.backend not in (None, settings.backend):
+            text = written_with_backend(text, options.backend)
         if options.device is None:
             text = written_out(text)
         else:
             settings = settings.model_copy(update={"device": options.device})
             text = written_for_device(text, options.device)
+    if options.backend is not None:
+        settings = settings.model_copy(update={"backend": options.backend})
     try:
         share = share_of(loaded.model, settings)
     except UnknownDeviceError as error:
-        raise MisuseError(f"{options.robot}: {error}") from error
+        known = error.hint or "it has no block `devices`"
+        raise MisuseError(f"{options.robot}: {error}; {known}") from error
     name = robot_name(settings.name, model)
     if settings.device is not None:
         name = f"{name}-{settings.device}"
@@ -210,7 +218,7 @@ def compose(
         UnknownTypeError: The type of a topic in the robot file is not installed.
         UnknownFieldError: That type does not have the field that the robot file names.
     """
-    is_real = (options.backend or files.settings.backend) == "ros2"
+    is_real = files.settings.backend == "ros2"
     make = _with_ros2 if is_real else _with_simulated
     for left in files.share.left_out:
         log.warning("left to the supervisor: %s", left.words)
@@ -230,8 +238,10 @@ def _with_simulated(
     """
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is not False
-    if robot.ros2 != Ros2Block():
+    if robot.ros2.model_copy(update={"messages": Ros2Block().messages}) != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
+    if any(node.process is not None for node in robot.nodes.values()):
+        log.warning("`process` of the robot file has no effect: the nodes are simulated")
     now = clock.now()
     memory = None if stores.journal is None else memory_in(stores.journal.found)
     simulated = make_simulated_robot(
@@ -253,10 +263,12 @@ def _with_simulated(
         files.own_part, onboard, clock, whole, backend.readings, what, stores=stores
     )
     supervisor.sources, supervisor.link = status, link
-    supervisor.frame_id = robot.vehicle.frame_id
+    supervisor.live_faults = backend
     limits = ServiceLimits.of(robot.limits)
     parts = None if link else SimulatedParts(onboard, simulated)
-    return Composition(supervisor, limits, simulated=parts, place=place)
+    return Composition(
+        supervisor, limits, simulated=parts, place=place, interface=_interface(options, robot)
+    )
 
 
 def _with_ros2(
@@ -266,7 +278,7 @@ def _with_ros2(
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is True
     now = clock.now()
-    graph = _join_graph()
+    graph = join_graph()
     _require_types(graph, robot.ros2)
     ros = Ros2Backend(share.local_model, robot, graph, clock)
     onboard = make_onboard(files.loaded.model, files.settings, now)
@@ -282,11 +294,24 @@ def _with_ros2(
     else:
         backend, status = _with_sources(files, clock, ros, (ros,), link)
         supervisor = Supervisor(files.own_part, onboard, clock, backend, stores=stores)
-    supervisor.sources, supervisor.link = status, link
-    supervisor.frame_id = robot.vehicle.frame_id
+    supervisor.sources, supervisor.link, supervisor.navigation = status, link, ros
+    supervisor.processes = make_processes(robot, options.robot)
     mapped = {block.topic for block in robot.ros2.signals.values()}
-    gateway = RosGateway(RosInterface(supervisor), graph, clock, mapped)
-    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway, place=place)
+    interface, worker = _interface(options, robot), make_worker()
+    gateway = RosGateway(RosInterface(supervisor, interface, worker), graph, clock, mapped)
+    limits = ServiceLimits.of(robot.limits)
+    return Composition(supervisor, limits, gateway, place=place, interface=interface, worker=worker)
+
+
+def _interface(options: ServeOptions, robot: RobotSettings) -> InterfaceSettings:
+    """Return what a robot file says about the interface to ROS."""
+    messages, frame_id = MessageSet(robot.ros2.messages), robot.vehicle.frame_id
+    if options.robot is None or robot.tasks is None:
+        return InterfaceSettings(messages, frame_id=frame_id)
+    folder = options.robot.parent / robot.tasks.folder
+    if not folder.is_dir():
+        log.warning("tasks.folder: there is no folder %s; /serve_waypoints finds no file", folder)
+    return InterfaceSettings(messages, WaypointFolder(folder), frame_id)
 
 
 def _link_of(
@@ -340,25 +365,10 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
         named.append(topics.command.type)
     if topics.diagnostics is not None:
         named.append(DIAGNOSTICS)
+    if topics.navigation is not None:
+        named.append(topics.navigation.type)
     for type_name in named:
         if not graph.has_type(type_name):
             raise UnknownTypeError(type_name)
     for signal in topics.signals.values():
         graph.require_field(signal.type, signal.path or ())
-
-
-def _join_graph() -> RosGraph:
-    """Join the ROS 2 graph.
-
-    Raises:
-        MisuseError: This Python cannot import rclpy, or the middleware does not start.
-    """
-    try:
-        # Imported here, since ROS 2 is not installed on every machine.
-        from service.ros.graph.link import RosLink
-    except ImportError as error:
-        raise MisuseError(f"ROS 2 is not available: {error}. What to do: {_NO_ROS}") from error
-    try:
-        return RosLink()
-    except RuntimeError as error:
-        raise MisuseError(f"ROS 2 does not start: {error}") from error

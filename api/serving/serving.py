@@ -12,7 +12,6 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
-from pathlib import Path
 
 from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, take_token
 from api.app import create_app, prepare
@@ -20,7 +19,6 @@ from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
 from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import (
-    EXAMPLE,
     Composition,
     RobotFiles,
     ServeOptions,
@@ -29,21 +27,31 @@ from api.serving.composition import (
     read_files,
 )
 from api.serving.data_folder import MEMORY
+from api.serving.failures import (
+    FAILED,
+    MISUSED,
+    SUCCEEDED,
+    complain_of,
+    end_with,
+    leaves,
+    tell_failure,
+)
 from api.serving.garbage import Heap
 from api.serving.misuse import MisuseError
 from api.serving.output import Output
 from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
+from api.serving.standing import until_it_stands
 from api.serving.stop_signals import StopSignals
 from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
-from api.terminal_text import complain, counted, finding_line
+from api.terminal_text import counted, finding_line
 from domain.errors import InvalidModelError
-from domain.findings import Finding
 from service.clock import continuous_clock
+from service.files.model_file import EXAMPLE
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
 from service.ros.gateway import RosGateway
-from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
+from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
 from service.start_task import StartTaskError
 from service.storage.errors import FolderInUseError, UnusableFolderError
@@ -52,7 +60,6 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 _NOT_IN_ROS = (UnknownFieldError, UnknownTypeError)
-SUCCEEDED, FAILED, MISUSED = 0, 1, 2
 _MISUSES = (
     InvalidOriginError,
     InvalidTokenError,
@@ -91,15 +98,15 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
             runner = stack.enter_context(asyncio.Runner(loop_factory=new_event_loop))
             return runner.run(_run(options, files, network, manager, output))
     except _MISUSES as error:
-        return _end(str(error), MISUSED)
+        return end_with(str(error), MISUSED)
     except InvalidModelError as error:
-        return _complain_of(options.model or EXAMPLE, error.findings)
+        return complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
-        return _complain_of(options.robot, error.findings)
+        return complain_of(options.robot, error.findings)
     except FolderInUseError as error:
-        return _end(f"{error}; give this one another with --data", FAILED)
+        return end_with(f"{error}; give this one another with --data", FAILED)
     except (ListenError, StartTaskError, UnusableFolderError, *_NOT_IN_ROS) as error:
-        return _end(str(error), FAILED)
+        return end_with(str(error), FAILED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +157,8 @@ async def _make_server(
         access=network.access,
         limits=composition.limits,
         simulated=composition.simulated,
+        interface=composition.interface,
+        worker=composition.worker,
     )
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     await prepare(app)
@@ -206,8 +215,9 @@ async def run_service(
 
     If the supervisor fails, the web server ends too: a live page for a robot that is not supervised
     would be dangerous. The same holds for the gateway to ROS 2, if there is one. On a signal the
-    vehicle is stopped, nodes stay as they are, and WebSockets are closed with code 1012. A second
-    signal ends the process at once.
+    vehicle is stopped, nodes stay as they are, and WebSockets are closed with code 1012; programs
+    of nodes that run here are ended once the vehicle stands. A second signal ends the process at
+    once.
     """
     supervisor, gateway = composition.supervisor, composition.gateway
     stopping = asyncio.Event()
@@ -232,10 +242,13 @@ async def run_service(
             await serving
             if offering is not None:
                 offering.cancel()
+            if supervisor.processes is not None:
+                # Some of them may be what brakes it.
+                await until_it_stands(supervisor)
             supervising.cancel()
     except* Exception as failures:
-        for failure in _leaves(failures):
-            _tell_failure(failure)
+        for failure in leaves(failures):
+            tell_failure(failure)
         code = FAILED
     return code
 
@@ -251,6 +264,7 @@ def greet(
     does = "supervises" if options.device is None else f"is device {options.device} of"
     yield f"Pilothouse {installed_version()} {does} {source}: {counts}"
     yield f"  page  {url}/"
+    yield f"  ros   {url.replace('http', 'ws', 1)}/rosbridge for clients of rosbridge"
     if composition.place is not None:
         yield f"  link  {composition.place.words}"
     if access.required:
@@ -274,7 +288,10 @@ def greet(
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
     vehicle = " and the vehicle" if options.device is None else ""
-    yield f"Ctrl-C stops the service{vehicle}; nodes stay as they are."
+    others = "nodes stay as they are"
+    if supervisor.processes is not None:
+        others = "programs that it runs end with it, and other nodes stay as they are"
+    yield f"Ctrl-C stops the service{vehicle}; {others}."
 
 
 def greeting_json(
@@ -337,34 +354,6 @@ async def _offer(gateway: RosGateway) -> None:
     raise TaskFailedError("gateway")
 
 
-def _tell_failure(failure: BaseException) -> None:
-    """Log why the service ends; without a traceback if the user can fix the cause."""
-    origins = [*_origins(failure)]
-    if all(isinstance(origin, GraphFailedError | UnknownTypeError) for origin in origins):
-        log.critical("%s", "; ".join(str(origin) for origin in origins))
-    else:
-        log.critical("%s", failure, exc_info=failure.__cause__ or failure)
-
-
-def _origins(failure: BaseException) -> Iterator[BaseException]:
-    """Yield what a failure goes back to; a task may fail because one of its own did."""
-    if isinstance(failure, BaseExceptionGroup):
-        for each in failure.exceptions:
-            yield from _origins(each)
-    elif isinstance(failure, TaskFailedError) and failure.__cause__ is not None:
-        yield from _origins(failure.__cause__)
-    else:
-        yield failure
-
-
-def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]:
-    for failure in group.exceptions:
-        if isinstance(failure, BaseExceptionGroup):
-            yield from _leaves(failure)
-        else:
-            yield failure
-
-
 def new_event_loop() -> asyncio.AbstractEventLoop:
     """Return the loop that a server runs in: uvloop, where there is one."""
     try:
@@ -372,14 +361,3 @@ def new_event_loop() -> asyncio.AbstractEventLoop:
     except ImportError:  # There is none for Windows.
         return asyncio.new_event_loop()
     return uvloop.new_event_loop()
-
-
-def _end(message: str, code: int) -> int:
-    complain(message)
-    return code
-
-
-def _complain_of(file: Path | None, findings: Sequence[Finding]) -> int:
-    for finding in findings:
-        print(finding_line(str(file), finding), file=sys.stderr)
-    return FAILED

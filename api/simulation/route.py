@@ -10,7 +10,14 @@ from api.http.dependencies import SupervisorDep
 from api.http.request_body import limits_of, read_body
 from api.http.route_policy import Permission, policy
 from api.http.schemas.simulation import SimulationJson
-from api.simulation.simulation_job import LiveCopy, SimulatedParts, copy_of, simulate_posted
+from api.simulation.simulation_job import (
+    HAS_DEVICES,
+    IS_REAL,
+    LiveCopy,
+    SimulatedParts,
+    copy_of,
+    simulate_posted,
+)
 from service.forked_call import forked_call
 from service.supervisor import Supervisor
 from service.worker import Jobs, OutOfMemoryError
@@ -51,7 +58,8 @@ async def simulate(
     """
     raw = await read_body(request, limits_of(request).model_bytes)
     live = await _copy(request.app.state, supervisor) if b'"live"' in raw else None
-    content = await simulator.call(simulate_posted, raw, supervisor.model_text, live)
+    why_not = IS_REAL if supervisor.link is None else HAS_DEVICES
+    content = await simulator.call(simulate_posted, raw, supervisor.model_text, live, why_not)
     return Response(content, media_type="application/json")
 
 

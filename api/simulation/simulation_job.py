@@ -33,6 +33,11 @@ from service.virtual_clock import VirtualClock
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)
 """Wall time at 0 s; fixed, so that all runs are equal."""
+IS_REAL = "the live robot is real: only a simulated one can be copied"
+HAS_DEVICES = (
+    "the live robot has several computers, and what runs on the others cannot be copied: leave out"
+    " `from`, and give model and robot; all parts are then simulated as on one computer"
+)
 
 
 class SimulatedParts(NamedTuple):
@@ -61,19 +66,22 @@ def copy_of(onboard: Onboard, robot: SimulatedRobot) -> bytes:
     return copy.getvalue()
 
 
-def simulate_posted(raw: bytes, model_text: str, live: LiveCopy | None) -> bytes:
+def simulate_posted(
+    raw: bytes, model_text: str, live: LiveCopy | None, why_not: str = IS_REAL
+) -> bytes:
     """Run a posted scenario and return the results as JSON.
 
     Args:
         raw: The body, as described by `SimulationBody`.
         model_text: The loaded model.
         live: A copy of the live robot; None: not available.
+        why_not: Why it is not.
 
     Raises:
         PilothouseError: The body is invalid, or the results are too large.
     """
     body = _read(raw)
-    simulation = Simulation(body, robot_for(body, model_text, live))
+    simulation = Simulation(body, robot_for(body, model_text, live, why_not))
     simulation.run()
     return simulation.as_json().encode()
 
@@ -87,13 +95,16 @@ def _read(raw: bytes) -> SimulationBody:
         raise InvalidBodyError(faults_of(placed), count=error.error_count()) from error
 
 
-def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualService:
+def robot_for(
+    body: SimulationBody, model_text: str, live: LiveCopy | None, why_not: str = IS_REAL
+) -> VirtualService:
     """Return the robot at the start of a scenario.
 
     Args:
         body: The scenario.
         model_text: The loaded model, for a scenario without one.
         live: A copy of the live robot; None: not available.
+        why_not: Why it is not.
 
     Raises:
         InvalidBodyError: The settings are invalid, or the live robot cannot be copied.
@@ -101,14 +112,15 @@ def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> V
     """
     if body.begin == "live":
         if live is None:
-            error = InvalidValueError("the live robot is real: only a simulated one can be copied")
-            raise InvalidBodyError.at("from", error)
+            raise InvalidBodyError.at("from", InvalidValueError(why_not))
         return _copied(model_text, live)
     loaded = read_model(model_text if body.model is None else body.model)
     try:
         robot = robot_settings_of(body.robot or {}, loaded.model)
     except InvalidValueError as error:
         raise InvalidBodyError.at(f"/robot{error.pointer}", error) from error
+    # One computer simulates all parts, and decides what devices would.
+    robot = robot.model_copy(update={"devices": {}})
     if body.robot is not None:
         loaded = with_signals(loaded, robot.to_signal_settings())
     if faults := list(_faults_of_conditions(body, loaded.model, robot)):

@@ -5,6 +5,7 @@ import asyncio
 from api.http.problems import problem_of
 from api.http.routes.tasks import faults_in_body, task_request
 from api.http.schemas.problem import Problem
+from api.http.schemas.simulated import fault_of
 from api.http.schemas.simulation import (
     AnyStep,
     ChangeStep,
@@ -26,7 +27,6 @@ from domain.inputs import (
     TransitionRequest,
 )
 from domain.lifecycle import Transition
-from domain.simulation.node_settings import Fault
 from domain.state_and_mode import part_name
 from domain.timebase import seconds
 from service.simulation.virtual_time import VirtualService
@@ -57,8 +57,7 @@ class Actors:
                 case NodeStep():
                     self._disturb(step)
                 case VehicleStep():
-                    reports = step.vehicle == "recover"
-                    self._robot.backend.set_vehicle_reporting(reports)
+                    self._robot.backend.set_vehicle_fault(fault_of(step.vehicle))
         except PilothouseError as error:
             return problem_of(error, self._robot.clock)
         return None
@@ -97,8 +96,7 @@ class Actors:
     def _disturb(self, step: NodeStep) -> None:
         node = part_name(step.node)
         if step.parameters is None:
-            fault = None if step.set_fault is None else Fault(step.set_fault)
-            self._robot.backend.set_fault(node, fault)
+            self._robot.backend.set_fault(node, fault_of(step.fault))
         else:
             self._robot.backend.set_parameters(node, step.parameters)
 

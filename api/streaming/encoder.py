@@ -59,6 +59,7 @@ class StreamEncoder:
             epoch=self._supervisor.epoch,
             boot=self._supervisor.boot,
             started_at=timestamp(self._clock, self._supervisor.started_at),
+            model=self._supervisor.model_name,
             newest=self._supervisor.events.newest,
             topics=[topic for topic in TOPICS if topic in topics],
             period_s=to_seconds(PERIOD),

@@ -69,6 +69,10 @@ _OF_TARGETS = {
     TOO_OFTEN: "The part has returned too often within a minute.",
 }
 _OF_PARTS = {
+    "PROCESS_ENDED": "The [process](../how-to/start-a-robots-processes.md) of the node ended, and "
+    "nobody had asked for that; until the next one has run for a second.",
+    "PROCESS_GIVEN_UP": "The process of the node ended too often: it is not started again before "
+    "somebody asks, also over a restart.",
     "UNREACHABLE": "The node cannot be reached, or was never heard of.",
     "ERROR_PROCESSING": "The node is in `errorprocessing`.",
     "PARAMETERS_DRIFTED": "The node is active, no change drives it, and a parameter that it "
@@ -96,6 +100,7 @@ _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
     "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
     "NO_AUTHENTICATION": "Anyone who can reach the service may use it.",
+    "NO_CONTROLLER": "The external controller is absent, silent, or keeps a goal: tasks are held.",
     "NO_DRIVE": "Drive commands do not reach the vehicle, so tasks are held.",
     "NO_POSE": "No current pose of the vehicle, so tasks are held.",
     "SOURCE_FAILS": "The source of a signal gives no reading, or one that the signal cannot have.",

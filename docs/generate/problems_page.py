@@ -18,6 +18,7 @@ _ONLY_HTTP = {
     "NOT_READY": (503, "`/readyz`: no model, or the core does not tick."),
     "NO_HISTORY": (404, "The history of signals is not kept, as in a simulation."),
     "NO_MOCK": (404, "Signals are not mocked."),
+    "NOT_SIMULATED": (409, "A fault for a node or a vehicle that is not simulated here."),
     "TOO_MANY_REQUESTS": (429, "More requests per second than one address may send."),
     "REPEATED_HEADER": (400, "A header that may occur once is there more than once."),
     "UNKNOWN_PATH": (404, "Nothing exists at this path."),

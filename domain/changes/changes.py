@@ -238,6 +238,12 @@ class Changes:
     def report(self, report: NodeReport, now: Instant) -> None:
         """Judge the step in flight by a report that the parts have processed, and continue."""
         self._steps.report(report, now)
+        if not self._steps.is_cut_off_by(report):
+            return
+        node = report.node
+        for change in [each for each in self._running.values() if node in each.open]:
+            if change.order.waits(node):
+                self._steps.give_up_before_its_turn(change.pursue(node), now)
 
     def answer(self, answer: NodeAnswer, now: Instant) -> None:
         """Fail the step in flight if the node rejected it."""
@@ -309,8 +315,8 @@ class Changes:
         is_strict |= change.failure is not None
         if is_strict and pursuit.outcome is not StepStatus.SUCCEEDED:
             self._stop(change, now)
-        else:
-            self._steps.add(change, change.order.done(pursuit.node))
+        elif not change.order.waits(pursuit.node):
+            self._steps.add(change, change.freed_by(pursuit.node))
 
     def _stop(self, change: Change, now: Instant) -> None:
         """Begin no further step of a running change; steps in flight end."""

@@ -177,9 +177,20 @@ class NodeSteps:
             verdict = judge_report(step, report, self._facts[report.node])
             if verdict is not None:
                 self._end_step(step, verdict.status, verdict.error, now)
-        if report.reachable is False and self._facts[report.node].cut_off is not None:
+        if self.is_cut_off_by(report):
             self._give_up(report.node, now)
         self._advance(report.node, now)
+
+    def is_cut_off_by(self, report: NodeReport) -> bool:
+        """Tell whether a report says that the computer of a node is cut off."""
+        return report.reachable is False and self._facts[report.node].cut_off is not None
+
+    def give_up_before_its_turn(self, pursuit: Pursuit, now: Instant) -> None:
+        """End the pursuit of a node that waits for others, and whose computer is cut off."""
+        node = pursuit.node
+        self.foresee(pursuit)
+        pursuit.end(StepStatus.FAILED, f"{node}: {self._why_cut_off(node)}", now)
+        self._ended(pursuit, now)
 
     def answer(self, answer: NodeAnswer, now: Instant) -> None:
         """Fail the step in flight if the node rejected it."""
@@ -323,7 +334,7 @@ class NodeSteps:
 
         It may come back soon, and at rest on purpose: what was begun before the cut does not go on.
         """
-        why = f"the node {self._facts[node].why_unknown}"
+        why = self._why_cut_off(node)
         step = self._in_flight.get(node)
         if step is not None:
             self._end_step(step, StepStatus.TIMED_OUT, why, now)
@@ -331,6 +342,9 @@ class NodeSteps:
         if pursuit is not None:
             outcome = StepStatus.TIMED_OUT if pursuit.has_begun else StepStatus.FAILED
             self._finish(pursuit, outcome, f"{node}: {why}", now)
+
+    def _why_cut_off(self, node: PartName) -> str:
+        return f"the node {self._facts[node].why_unknown}"
 
     def _ask_facts(self, node: PartName, now: Instant) -> None:
         self._outbox.command(AskFacts(self._outbox.next_request(), node))
@@ -361,12 +375,7 @@ class NodeSteps:
         self, pursuit: Pursuit, outcome: StepStatus, error: str | None, now: Instant
     ) -> None:
         """End the pursuit of one node."""
-        pursuit.outcome, pursuit.error = outcome, error
-        if outcome is not StepStatus.SUCCEEDED:
-            step = pursuit.next_step()
-            if step is not None and not any(s.status is outcome for s in pursuit.steps):
-                step.end(outcome, now, error)
-            pursuit.drop_pending(StepStatus.CANCELED, now)
+        pursuit.end(outcome, error, now)
         del self._pursuits[pursuit.node]
         self._deadlines.clear(pursuit.node)
         self._ended(pursuit, now)

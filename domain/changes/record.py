@@ -175,6 +175,15 @@ class Pursuit:
                 return step
         return None
 
+    def end(self, outcome: StepStatus, error: str | None, now: Instant) -> None:
+        """End the pursuit; unless it succeeded, the step that would be next ends like it."""
+        self.outcome, self.error = outcome, error
+        if outcome is not StepStatus.SUCCEEDED:
+            step = self.next_step()
+            if step is not None and not any(s.status is outcome for s in self.steps):
+                step.end(outcome, now, error)
+            self.drop_pending(StepStatus.CANCELED, now)
+
     def drop_pending(self, status: StepStatus, now: Instant) -> None:
         """End all pending steps."""
         for step in self.steps:
@@ -258,6 +267,15 @@ class Change:
             pursuit = Pursuit(self.id, node, self.goals[node], rollback=self.is_going_back)
             self.pursuits[node] = pursuit
         return pursuit
+
+    def freed_by(self, node: PartName) -> list[PartName]:
+        """Return the nodes that may begin once a node is done, but those that ended before it."""
+        freed: list[PartName] = []
+        done = [node]
+        while done:
+            for each in self.order.done(done.pop()):
+                (freed if each in self.open else done).append(each)
+        return freed
 
     def leave(self, nodes: Iterable[PartName], status: StepStatus, now: Instant) -> None:
         """Note that nodes are not on their way any more; their pending steps end."""

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
-from domain.actor import Actor
+from domain.actor import NOBODY, Actor
 from domain.changes.admission import part_of
 from domain.changes.changing import Changing
 from domain.changes.pursuit import request_towards
-from domain.commands import ActAlone, AnswerOrder, AskFacts, TellReaction
+from domain.commands import ActAlone, AnswerOrder, AskFacts, NodeCommand, TellReaction
 from domain.computers import DeviceState
 from domain.concern import Concern, Takers
 from domain.devices.lead_view import LeadView, Word
@@ -53,11 +53,15 @@ from domain.reaction_terms import ReactionState
 from domain.reactions.reactions import Reactions
 from domain.snapshot import ModeView
 from domain.state_and_mode import PartName, StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Instant, seconds
 
 MAX_UNANSWERED = 10_000
 """Orders that a node has yet to answer; of more, the oldest are forgotten. The supervisor has its
 own deadlines."""
+
+ORDER_WAITS = seconds(5)
+"""How long an order towards rest waits at most for what was requested at the device: half of the
+time that a step of the supervisor has by default."""
 
 _TOLD = frozenset({ReactionState.ACTING, ReactionState.EXHAUSTED})
 _FOLLOWED = frozenset({DeviceState.CONNECTED, DeviceState.LATE})
@@ -69,6 +73,15 @@ class _Order(NamedTuple):
     request: int
     """The number that the supervisor gave it."""
     node: PartName
+
+
+class _Waiting(NamedTuple):
+    """An order towards rest, of a node that is busy on request of the device."""
+
+    order: OrderReceived
+    until: Instant
+    cause: int
+    """Id of the event that it was taken."""
 
 
 class Lead(Concern):
@@ -108,6 +121,8 @@ class Lead(Concern):
         """When the device acts alone unless it is connected before; None: it does not."""
         self._unanswered: dict[int, _Order] = {}
         """By our number of the request."""
+        self._waiting: dict[PartName, _Waiting] = {}
+        """By node, the order that it is given once it is free."""
         self._view: LeadView | None = None
         self._told: dict[str, ReactionState] = {}
         """By reaction, how the supervisor was told that it stands."""
@@ -129,20 +144,33 @@ class Lead(Concern):
         }
 
     def wake_at(self) -> Instant | None:
-        """Return when the device acts alone."""
-        return self._acts_at
+        """Return when the device acts alone, or an order has waited for long enough."""
+        due = [waiting.until for waiting in self._waiting.values()]
+        if self._acts_at is not None:
+            due.append(self._acts_at)
+        return min(due, default=None)
 
     def pass_time(self, now: Instant) -> None:
-        """Act alone once the device has been cut off for long enough."""
+        """Act alone once the device has been cut off for long enough; refuse what waited so."""
+        for node, waiting in list(self._waiting.items()):
+            if waiting.until <= now:
+                self._end_waiting(node, now)
         if self._acts_at is not None and self._acts_at <= now:
             self._acts_at = None
             self._act_alone(now)
 
     def settle(self, now: Instant) -> bool:
-        """Tell the supervisor which reactions act, if that changed."""
+        """Tell which reactions act, if that changed, and give nodes that are free what waited."""
         if self._outbox.reactions:
             self._tell_reactions(all_of_them=False)
-        return False
+        free = [
+            node
+            for node, waiting in self._waiting.items()
+            if self._judgement.busy(waiting.order.command) is None
+        ]
+        for node in free:
+            self._end_waiting(node, now)
+        return bool(free)
 
     # --- whom it follows -------------------------------------------------------------------------
 
@@ -154,6 +182,7 @@ class Lead(Concern):
         if before.incarnation != status.incarnation or status.state not in _FOLLOWED:
             # Another run counts its requests anew, and must not take an answer for its own.
             self._unanswered.clear()
+            self._waiting.clear()
         if status.state in _FOLLOWED:
             if self._word is not Word.SUPERVISOR:
                 self._follow(now)
@@ -202,18 +231,48 @@ class Lead(Concern):
     # --- orders of the supervisor ----------------------------------------------------------------
 
     def _take_order(self, order: OrderReceived, now: Instant) -> None:
-        """Pass an order on to its node, or refuse it."""
+        """Pass an order on to its node, now or once that is free, or refuse it."""
         command = order.command
         node, action = command.node, action_of(command)
-        refusal = self._refusal(order)
+        if not isinstance(command, AskFacts):
+            # The supervisor has one step of a node in flight: it has given up what it asked before.
+            self._waiting.pop(node, None)
+        refusal, busy = self._refusal(order), self._judgement.busy(command)
+        waits = refusal is None and busy is not None and self._judgement.leads_to_rest(command)
+        if refusal is None and not waits:
+            refusal = busy
         if refusal is not None:
             self._outbox.begin(now, OrderRefused(node, action, refusal))
             self._outbox.record_input()
             self._outbox.command(AnswerOrder(command.request, node, False, refusal))
             return
         self._outbox.begin(now, OrderTaken(node, action))
+        if waits:
+            cause = self._outbox.record_input()
+            self._waiting[node] = _Waiting(order, now + ORDER_WAITS, cause)
+            return
         if not isinstance(command, AskFacts):
             self._outbox.record_input()
+        self._pass_on(command)
+
+    def _end_waiting(self, node: PartName, now: Instant) -> None:
+        """Pass on what has waited for a node, or refuse it if the node is still busy."""
+        order, _, cause = self._waiting.pop(node)
+        command = order.command
+        self._outbox.resume(now, cause, NOBODY)
+        refusal = self._refusal(order) or self._judgement.busy(command)
+        if refusal is not None:
+            self._outbox.emit(OrderRefused(node, action_of(command), refusal))
+        if refusal is not None or self._judgement.is_there(command):
+            is_done = refusal is None
+            self._outbox.command(AnswerOrder(command.request, node, is_done, refusal or ""))
+            return
+        self._pass_on(command)
+
+    def _pass_on(self, command: NodeCommand) -> None:
+        """Ask a node for what the supervisor wants of it."""
+        node = command.node
+        if not isinstance(command, AskFacts):
             self._parts.note_request(node)
             # A request of before, made here, is replaced by what the supervisor wants now.
             self._changing.forget_targets((node, *self._parts.model.ancestors[node]))

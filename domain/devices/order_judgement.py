@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from domain.changes.changing import Changing
+from domain.changes.plan import TOWARDS_REST
 from domain.commands import AskFacts, AskParameters, AskTransition, NodeCommand
 from domain.health.health import Health
 from domain.lifecycle import LifecycleState, Transition
@@ -33,7 +34,7 @@ class OrderJudgement:
         """Return why an order is refused; None: it is not.
 
         Nothing is activated while the emergency stop is engaged here, whatever the supervisor knows
-        of it. A step that somebody requested at the device, such as to deactivate, ends first.
+        of it.
         """
         if isinstance(command, AskFacts):
             return None
@@ -43,15 +44,29 @@ class OrderJudgement:
         if is_activation and self._health.is_stopped:
             why = "; ".join(reason.message for reason in self._health.stop_reasons)
             return f"{command.node} is not activated while ESTOP is active: {why}"
-        local = self._against_reaction(command)
-        if local is not None:
-            return local
+        return self._against_reaction(command)
+
+    def busy(self, command: NodeCommand) -> str | None:
+        """Return what somebody requested at the device and ends first; None: nothing."""
+        if isinstance(command, AskFacts):
+            return None
         step = self._changing.step_in_flight(command.node)
         # What was canceled when the supervisor came back keeps nobody waiting: its node says no
         # itself as long as it is busy, and may never end the step if it died meanwhile.
         if step is not None and not self._changing.change(step.change).status.is_final:
             return f"{command.node} is busy on request of the device: {step.action_name}"
         return None
+
+    @staticmethod
+    def leads_to_rest(command: NodeCommand) -> bool:
+        """Tell whether a command leads away from activity, and so may be late."""
+        return isinstance(command, AskTransition) and command.transition in TOWARDS_REST
+
+    def is_there(self, command: NodeCommand) -> bool:
+        """Tell whether a node is where a transition would bring it."""
+        if not isinstance(command, AskTransition):
+            return False
+        return self._parts.facts[command.node].known_state is command.transition.goal
 
     def _against_reaction(self, command: AskTransition | AskParameters) -> str | None:
         """Return that a reaction keeps a node where it is; None: none does, or it may rest."""

@@ -52,6 +52,32 @@ class DriveUnavailable(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class NavigationAvailable(Event):
+    """The external controller can be given goals again."""
+
+    kind = "navigation.available"
+    is_input = True
+    is_notable = False
+
+    def _words(self) -> str:
+        return "the external controller can be given goals"
+
+
+@dataclass(frozen=True, slots=True)
+class NavigationUnavailable(Event):
+    """The external controller cannot be given goals, or does not give one up."""
+
+    kind = "navigation.unavailable"
+    is_input = True
+    is_notable = False
+
+    reason: str
+
+    def _words(self) -> str:
+        return because("the external controller is given no goals", self.reason)
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleStillMoving(Event):
     """The vehicle should stand, and still moves after the time that its braking needs."""
 

@@ -15,6 +15,8 @@ CHECKPOINT_TOO_FEW = "CHECKPOINT_TOO_FEW"
 CHECKPOINT_TOO_MANY = "CHECKPOINT_TOO_MANY"
 CHECKPOINT_LATE = "CHECKPOINT_LATE"
 CHECKPOINT_WRONG_ORDER = "CHECKPOINT_WRONG_ORDER"
+PROCESS_ENDED = "PROCESS_ENDED"
+PROCESS_GIVEN_UP = "PROCESS_GIVEN_UP"
 LATE = "LATE"
 LOST = "LOST"
 DEVICE_CONFLICT = "DEVICE_CONFLICT"
@@ -48,7 +50,15 @@ OF_CHECKPOINTS: Mapping[str, Severity] = MappingProxyType(
 )
 """The errors of nodes whose checkpoints are supervised, besides those of every node."""
 
-ALL_OF_NODES: Mapping[str, Severity] = MappingProxyType({**OF_NODES, **OF_CHECKPOINTS})
+OF_PROCESSES: Mapping[str, Severity] = MappingProxyType(
+    {PROCESS_ENDED: Severity.URGENT, PROCESS_GIVEN_UP: Severity.URGENT}
+)
+"""The errors of nodes whose process is run here, besides those of every node."""
+
+ALL_OF_NODES: Mapping[str, Severity] = MappingProxyType(
+    # What explains that a node is unreachable is decided first.
+    {**OF_PROCESSES, **OF_NODES, **OF_CHECKPOINTS}
+)
 """The errors that any node may have without a word in the model file."""
 
 OF_DEVICES: Mapping[str, Severity] = MappingProxyType(

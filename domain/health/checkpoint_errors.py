@@ -98,7 +98,7 @@ class CheckpointErrors(Concern):
         checkpoints = self._nodes[node]
         for error, problem in checkpoints.judge(now, is_late=self._health.is_late).items():
             found = None if problem is None else Found(ErrorState.ACTIVE, *problem)
-            self._errors.note_checkpoints(node, error, found, now)
+            self._errors.note_found(node, error, found, now)
         due = checkpoints.wake_at()
         if due is None:
             self._deadlines.clear(node)

@@ -12,9 +12,11 @@ from domain.health.built_in_errors import (
     ALL_OF_NODES,
     DEVIATES,
     LOST,
+    OF_CHECKPOINTS,
     OF_DEVICES,
     OF_EVERY_PART,
     OF_NODES,
+    OF_PROCESSES,
     UNREACHABLE,
     severity_of,
 )
@@ -32,6 +34,16 @@ Place: TypeAlias = tuple[int, int, int]
 
 _POSITIONS = {error: position for position, error in enumerate(ALL_OF_NODES)}
 
+_OF_NODES_WITH: Mapping[tuple[bool, bool], Mapping[str, Severity]] = MappingProxyType(
+    {
+        (False, False): OF_NODES,
+        (False, True): {**OF_NODES, **OF_CHECKPOINTS},
+        (True, False): {**OF_PROCESSES, **OF_NODES},
+        (True, True): ALL_OF_NODES,
+    }
+)
+"""Built-in errors of a node, by whether its process is run here, and its checkpoints supervised."""
+
 _Link: TypeAlias = tuple[ErrorKey, ErrorKey]
 """An error, and another one that explains it."""
 
@@ -41,8 +53,8 @@ class ErrorCauses:
 
     Beside what is declared: what rests on whether nodes are reachable is explained by UNREACHABLE
     of these nodes, and that a system deviates by the parts that do; that a node is UNREACHABLE, by
-    its device if that is LOST. Such a link is left out where it would close a circle, since what is
-    declared prevails.
+    its device if that is LOST, or by its process. Such a link is left out where it would close a
+    circle, since what is declared prevails.
     """
 
     def __init__(
@@ -50,6 +62,7 @@ class ErrorCauses:
         model: SmhModel,
         with_checkpoints: Container[PartName] = (),
         devices: Mapping[PartName, Sequence[PartName]] = MappingProxyType({}),
+        with_processes: Container[PartName] = (),
     ) -> None:
         """Gather what explains what.
 
@@ -57,12 +70,14 @@ class ErrorCauses:
             model: Systems and nodes, with the errors that the file declares.
             with_checkpoints: Nodes whose checkpoints are supervised.
             devices: By device, the nodes that it owns; no device has the name of a part.
+            with_processes: Nodes whose process is run here.
         """
         self._model = model
         self.devices = devices
         """By device, its nodes; read only."""
         self._device_of = {node: name for name, nodes in devices.items() for node in nodes}
         self._with_checkpoints = with_checkpoints
+        self._with_processes = with_processes
         self.declared: Mapping[ErrorKey, DeclaredError] = {
             ErrorKey(part, name): own
             for part, of_part in model.errors.items()
@@ -97,9 +112,10 @@ class ErrorCauses:
         """
         if part in self.devices:
             return OF_DEVICES
-        built_in = OF_NODES if part in self._model.nodes else OF_EVERY_PART
-        if part in self._with_checkpoints:
-            built_in = ALL_OF_NODES
+        built_in = OF_EVERY_PART
+        if part in self._model.nodes:
+            special = part in self._with_processes, part in self._with_checkpoints
+            built_in = _OF_NODES_WITH[special]
         own = self._model.errors.get(part)
         return (*built_in, *(name for name in own if name not in built_in)) if own else built_in
 
@@ -138,6 +154,10 @@ class ErrorCauses:
         if error == LOST:
             unreachable = (ErrorKey(node, UNREACHABLE) for node in self.devices.get(part, ()))
             yield from (each for each in unreachable if is_on(each) and each not in self._causes)
+        if error in OF_PROCESSES:
+            unreachable_node = ErrorKey(part, UNREACHABLE)
+            if is_on(unreachable_node) and unreachable_node not in self._causes:
+                yield unreachable_node
         if error not in (UNREACHABLE, DEVIATES):
             return
         deviating = [ErrorKey(part, DEVIATES)] if error == UNREACHABLE else []
@@ -215,8 +235,13 @@ class ErrorCauses:
 
     def _of_unreachable(self, node: PartName | None) -> tuple[ErrorKey, ...]:
         """Return what can explain that a node is unreachable, apart from what is declared."""
-        device = self._device_of.get(node) if node is not None else None
-        return () if device is None else (ErrorKey(device, LOST),)
+        if node is None:
+            return ()
+        device = self._device_of.get(node)
+        of_device = () if device is None else (ErrorKey(device, LOST),)
+        if node not in self._with_processes:
+            return of_device
+        return (*of_device, *(ErrorKey(node, error) for error in OF_PROCESSES))
 
     def _of_deviation(self, part: PartName) -> Iterator[ErrorKey]:
         """Yield what can explain that a part deviates, apart from what is declared."""

@@ -171,10 +171,8 @@ class PartErrors(Concern):
         self._raise(part, INVARIANT_BROKEN, Found(_ACTIVE, message), now, cause)
         return not was_on
 
-    def note_checkpoints(
-        self, node: PartName, error: str, found: Found | None, now: Instant
-    ) -> None:
-        """Raise an error of the checkpoints of a node, or clear it.
+    def note_found(self, node: PartName, error: str, found: Found | None, now: Instant) -> None:
+        """Raise an error of a node that another concern looks for, or clear it.
 
         Args:
             node: The node.

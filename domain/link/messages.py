@@ -146,6 +146,13 @@ class Report:
     """Whether it leaves nothing out: of a node or signal that is not in it, nothing is known."""
     session: Session | None = None
     """Of the device when it was made; one of before a loss is out of date."""
+    piece: int = 1
+    """Of a report that is too long for one message: which piece this is, from 1. All pieces have
+    one `seq`, and none of them is `complete`."""
+    pieces: int = 1
+    """Into how many it was cut."""
+    complete_together: bool = False
+    """Of a piece: whether all pieces together leave nothing out."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -358,7 +358,7 @@ class Peer:
     def _end_former(self) -> None:
         """End the stops of processes that were dealt with before; this one tells its own."""
         for process in self._former:
-            if process != self.incarnation:
+            if process != self.incarnation and not self._may_live(process):
                 self.stops.replace(process)
 
     def _end_those_before(self) -> None:
@@ -369,8 +369,17 @@ class Peer:
         until = self._began_at + self._settings.lost
         for process in self.stops.processes():
             is_silent = process != self.incarnation and process not in self._others
-            if is_silent and self.stops.heard_at(process) < until:
+            is_before = is_silent and self.stops.heard_at(process) < until
+            if is_before and not self._may_live(process):
                 self.stops.replace(process)
+
+    def _may_live(self, process: Incarnation) -> bool:
+        """Tell whether a process may be stopped and live, where it cannot be heard.
+
+        A device that was started again without its stop looks the same as another one that took the
+        name of one behind a broken cable: a person decides. Of the supervisor there is a person.
+        """
+        return self.name != SUPERVISOR and self.stops.is_certain(process)
 
     def _drop_done_releases(self, process: Incarnation) -> None:
         engaged = self.stops.ids_of(process)

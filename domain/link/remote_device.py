@@ -15,6 +15,7 @@ from domain.link.gathering import Gathering
 from domain.link.messages import Beat, NodeOrder, Report
 from domain.link.ownership import Ownership, with_stamps
 from domain.link.peer import Own, Peer, Said
+from domain.link.pieces import Pieces
 from domain.link.settings import LinkSettings, Owned
 from domain.timebase import Instant
 
@@ -49,6 +50,7 @@ class RemoteDevice:
         self._lost_session: Session | None = None
         """The session that commands carried before the loss; the device is to replace it."""
         self._report_seq = 0
+        self._pieces = Pieces()
         self._order_seq = 0
         self._told = DeviceStatus(peer.name, DeviceState.NEVER_SEEN)
         self._was_connected = False
@@ -82,18 +84,24 @@ class RemoteDevice:
         is_of_process = report.incarnation == self._process
         if not is_of_process or not self._is_present(report) or report.seq <= self._report_seq:
             return False
-        if report.seq != self._report_seq + 1:
+        whole = self._pieces.add(report)
+        if whole is None:
+            return True
+        if whole.seq != self._report_seq + 1:
             self._facts.note_gap()
-        self._report_seq = report.seq
+        self._report_seq = whole.seq
+        self._take_whole(whole, now, gathering)
+        return True
+
+    def _take_whole(self, report: Report, now: Instant, gathering: Gathering) -> None:
         own = (self._ownership.admit(told) for told in report.items)
         items = [with_stamps(told, now) for told in own if told is not None]
         if not self.is_connected:
             self._facts.note(items, now, is_complete=report.complete)
             self._connect_if_ready(now, gathering)
-            return True
+            return
         for told in self._facts.take(items, now, is_complete=report.complete):
             gathering.give(told)
-        return True
 
     def lose(self) -> None:
         """Note that the lease ended."""

@@ -1,7 +1,7 @@
 """Emergency stops over the link: those of this computer, and those of another one."""
 
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 from typing import NamedTuple
 
 from domain.computers import Incarnation, PeerStop, StopId
@@ -11,7 +11,7 @@ from domain.timebase import Instant
 MAX_STOPS = 64
 """Stops of one process that are told and taken in at most; the robot is stopped by one."""
 _MAX_PROCESSES = 8
-"""Processes of one name whose stops are known at most."""
+"""Processes of one name whose stops are known at most, beside the one that is dealt with."""
 
 
 class OwnStops:
@@ -53,6 +53,8 @@ class _StopsOf:
     def __init__(self) -> None:
         self.heard_at: Instant = 0
         self.version = -1
+        self.is_certain = False
+        """Whether it was dealt with, or known to live, when it said so."""
         self.stops: dict[StopId, PeerStop] = {}
 
 
@@ -67,9 +69,9 @@ class HeardStops:
     """The stops that are engaged on another computer, by the process that says so.
 
     Anybody who answers by its name can engage one. A stop ends when its own process no longer has
-    it, or when another one that is dealt with came after that process: what a store did not bring
-    back is not engaged there. A stop of a process that ran beside the one that is dealt with, and
-    is no longer heard, is ended by a person who names it.
+    it, or the one that is dealt with no longer has what a store brought back to it. A stop of any
+    other process that is no longer heard is ended by a person who names it: it may live, and only
+    be cut off.
     """
 
     def __init__(self) -> None:
@@ -97,7 +99,7 @@ class HeardStops:
         self,
         process: Incarnation,
         version: int,
-        stops: Iterable[EngagedStop],
+        stops: Sequence[EngagedStop],
         now: Instant,
         *,
         lives: bool,
@@ -115,14 +117,18 @@ class HeardStops:
         """
         known = self._by.get(process) or _StopsOf()
         known.heard_at = now
+        known.is_certain |= lives or is_dealt_with
+        said = stops[:MAX_STOPS]
+        if is_dealt_with and len(self._by) > 1:
+            self._take_over(process, known.stops.keys() | {stop.id for stop in said})
         if version <= known.version:
             return
-        said = tuple(stops)[:MAX_STOPS]
         old = () if lives or is_dealt_with else self._ended
         taken = tuple(stop for stop in said if stop.id not in old)
         if not is_dealt_with and process not in self._by and not self._has_room_for(taken):
             return
         self._by[process] = known
+        self._drop_oldest(besides=process)
         if len(taken) == len(said):
             known.version = version
         known.stops = {
@@ -130,6 +136,11 @@ class HeardStops:
             or PeerStop(stop.id, stop.by, stop.reason, now - max(stop.age, 0))
             for stop in taken
         }
+
+    def is_certain(self, process: Incarnation) -> bool:
+        """Tell whether a process has a stop, and was dealt with, or lived, when it said so."""
+        known = self._by.get(process)
+        return known is not None and known.is_certain and bool(known.stops)
 
     def replace(self, process: Incarnation) -> None:
         """End all stops of a process that was replaced."""
@@ -175,6 +186,23 @@ class HeardStops:
         self._told = (ids, is_all)
         stops = tuple(stop for of in self._by.values() for stop in of.stops.values())
         return StopsNews(stops[:MAX_STOPS], None if is_all else tuple(sorted(known - ids)))
+
+    def _take_over(self, process: Incarnation, ids: Set[StopId]) -> None:
+        """Let stops be those of the process that is dealt with, which its store brought back."""
+        for other in [each for each in self._by if each != process]:
+            known = self._by[other]
+            brought_back = known.stops.keys() & ids
+            for stop in brought_back:
+                del known.stops[stop]
+            self._ended.extend(brought_back)
+            if brought_back and not known.stops:
+                del self._by[other]
+
+    def _drop_oldest(self, besides: Incarnation) -> None:
+        """Forget who was heard longest ago of too many; the others stop the robot as well."""
+        if len(self._by) > _MAX_PROCESSES + 1:
+            others = [process for process in self._by if process != besides]
+            self.replace(min(others, key=self.heard_at))
 
     def _has_room_for(self, stops: Sequence[EngagedStop]) -> bool:
         """Tell whether one more process can be remembered; without a stop there is no need to."""

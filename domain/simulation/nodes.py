@@ -238,6 +238,10 @@ class SimulatedNodes:
             raise refusal
         self._take_over(it, values, now)
 
+    def faults(self) -> dict[PartName, Fault | None]:
+        """Return all nodes with their faults; None: it has none."""
+        return {name: node.fault for name, node in self._nodes.items()}
+
     @property
     def count(self) -> int:
         """Return how many nodes there are."""

@@ -14,13 +14,20 @@ from dataclasses import replace
 import numpy as np
 
 from domain.inputs import VehicleReport
-from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
+from domain.simulation.vehicle_settings import (
+    WEAK_BRAKING_MPS2,
+    Noise,
+    Plant,
+    VehicleFault,
+    VehicleSettings,
+)
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.vehicle import COMMAND_VALID_FOR, DriveCommand, Pose, VehicleState
 
 REPORT_PERIOD: Duration = seconds(0.05)
 
 _STEP: Duration = seconds(0.01)
+_WEAK_BRAKES = VehicleFault.WEAK_BRAKES
 _AS_GOOD_AS_THERE = 1e-6
 """Difference, in m/s or rad, at which a lag counts as settled; it would never reach its target."""
 
@@ -44,7 +51,9 @@ class SimulatedVehicle:
             at_first: Pose and steering angle to begin with; None: the pose of the settings.
         """
         self._limits = settings.limits
+        self._built = settings.plant
         self._plant = settings.plant
+        """As it is with the current fault."""
         self._is_ideal = _is_ideal(settings.plant)
         self._noise = _NoiseSource(settings.plant.noise)
         state = at_first or VehicleState(settings.pose, 0.0, 0.0)
@@ -61,6 +70,7 @@ class SimulatedVehicle:
         self._reports_at = start
         self._next_report = start
         self._reporting = True
+        self._fault: VehicleFault | None = None
 
     # --- what is done to it ----------------------------------------------------------------------
 
@@ -71,9 +81,18 @@ class SimulatedVehicle:
         self._catch_up(now)
 
     def set_reporting(self, reporting: bool, now: Instant) -> None:
-        """Stop the reports of the vehicle, like a lost localization, or resume them."""
+        """Stop the reports of the vehicle, whatever its fault is, or resume them."""
         self._catch_up(now)
         self._reporting = reporting
+
+    def set_fault(self, fault: VehicleFault | None, now: Instant) -> None:
+        """Set the fault of the vehicle; None removes it."""
+        self._catch_up(now)
+        self._fault = fault
+        self._plant = _with_weak_brakes(self._built) if fault is _WEAK_BRAKES else self._built
+        self._is_ideal = _is_ideal(self._plant)
+        # An ideal one does at once what it was told.
+        self._follow(self._command)
 
     # --- what it does ----------------------------------------------------------------------------
 
@@ -91,6 +110,11 @@ class SimulatedVehicle:
     def state(self) -> VehicleState:
         """Return the actual state, without noise, at the last report or change of command."""
         return self._state
+
+    @property
+    def fault(self) -> VehicleFault | None:
+        """Return its fault; None: it has none."""
+        return self._fault
 
     @property
     def command(self) -> DriveCommand:
@@ -133,7 +157,7 @@ class SimulatedVehicle:
             self._take_commands(due)
             if due == self._next_report:
                 self._next_report += REPORT_PERIOD
-                if self._reporting:
+                if self._reporting and self._fault is not VehicleFault.SILENT:
                     self._reports.append(VehicleReport(self._noise.added_to(self._state)))
                     self._reports_at = due
 
@@ -220,6 +244,12 @@ class _NoiseSource:
             _wrapped(state.pose.yaw_rad + noise.yaw_rad * yaw),
         )
         return replace(state, pose=pose, speed_mps=state.speed_mps + noise.speed_mps * speed)
+
+
+def _with_weak_brakes(plant: Plant) -> Plant:
+    braking = plant.braking_mps2
+    weak = WEAK_BRAKING_MPS2 if braking is None else min(braking, WEAK_BRAKING_MPS2)
+    return replace(plant, braking_mps2=weak)
 
 
 def _is_ideal(plant: Plant) -> bool:

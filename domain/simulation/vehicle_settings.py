@@ -1,11 +1,24 @@
 """Settings of a simulated vehicle: initial pose, dynamics and sensor noise."""
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 from domain.timebase import Duration
 from domain.vehicle import Pose, VehicleLimits
 
 ORIGIN = Pose(0.0, 0.0, 0.0)
+
+
+class VehicleFault(StrEnum):
+    """A fault of the vehicle; it lasts until it is replaced or removed."""
+
+    SILENT = "silent"
+    """It reports no pose, like a lost localization."""
+    WEAK_BRAKES = "weak_brakes"
+    """It brakes with `WEAK_BRAKING_MPS2` at most."""
+
+
+WEAK_BRAKING_MPS2 = 0.3
 
 
 @dataclass(frozen=True, slots=True)

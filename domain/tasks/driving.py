@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from domain.actor import SERVICE
 from domain.concern import Concern, Takers
+from domain.controller import NavigationStatus
 from domain.events.driving import (
     DriveAvailable,
     DriveUnavailable,
@@ -11,6 +12,8 @@ from domain.events.driving import (
     GoalProgressed,
     HoldReleaseRequested,
     HoldRequested,
+    NavigationAvailable,
+    NavigationUnavailable,
     TaskCancelRequested,
     TaskRequested,
     VehicleReported,
@@ -38,6 +41,7 @@ from domain.snapshot import HoldView, TaskStatus, TaskView, VehicleView
 from domain.tasks.holds import (
     DRIVE_HOLD,
     ERROR_HOLD,
+    NAVIGATION_HOLD,
     VEHICLE_HOLD,
     why_not_restored,
 )
@@ -103,6 +107,7 @@ class Driving(Concern):
         return {
             VehicleReport: self._take_report,
             DriveStatus: self._take_drive_status,
+            NavigationStatus: self._take_navigation_status,
             GoalFeedback: self._take_feedback,
             GoalResult: self._take_result,
             TaskRequest: self._take_task,
@@ -160,6 +165,14 @@ class Driving(Concern):
         else:
             self._outbox.begin(now, DriveUnavailable(status.reason))
             self._planner.hold(DRIVE_HOLD, status.reason, "", now)
+
+    def _take_navigation_status(self, status: NavigationStatus, now: Instant) -> None:
+        if status.available:
+            self._outbox.begin(now, NavigationAvailable())
+            self._planner.release(NAVIGATION_HOLD, now)
+        else:
+            self._outbox.begin(now, NavigationUnavailable(status.reason))
+            self._planner.hold(NAVIGATION_HOLD, status.reason, "", now)
 
     def _take_feedback(self, feedback: GoalFeedback, now: Instant) -> None:
         self._outbox.begin(now, GoalProgressed(feedback.goal))

@@ -16,10 +16,12 @@ VEHICLE_HOLD = "vehicle"
 """Set while the pose of the vehicle is unknown or stale."""
 DRIVE_HOLD = "drive_process"
 """Set while drive commands do not reach the vehicle."""
+NAVIGATION_HOLD = "navigation"
+"""Set while an external controller cannot be given a goal, or does not give one up."""
 RESTART_HOLD = "restart"
 """Set when a restart of the service found a task that had not ended; people release it."""
 
-RESERVED = frozenset({ERROR_HOLD, VEHICLE_HOLD, DRIVE_HOLD})
+RESERVED = frozenset({ERROR_HOLD, VEHICLE_HOLD, DRIVE_HOLD, NAVIGATION_HOLD})
 MAX_HOLDS = 64
 
 

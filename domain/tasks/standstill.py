@@ -21,10 +21,6 @@ STANDSTILL_UNKNOWN = "STANDSTILL_UNKNOWN"
 
 REACTION: Duration = seconds(1.0)
 """Time that the vehicle may take besides braking: delay, and reports that come seldom."""
-SPARE = 1.25
-"""A stop may take so many times as long as the assumed braking does."""
-
-_LONGEST_S = 600.0
 _DIGITS = 3
 
 
@@ -105,18 +101,14 @@ class Standstill(Concern):
             return None
         by_us = was_driven or is_newly_held
         cause = self._outbox.record_input() if by_us else None
-        return _Stop(now, now + REACTION + self._braking_time(), self._watch.is_backwards, cause)
+        return _Stop(
+            now, now + REACTION + self._watch.braking_time(), self._watch.is_backwards, cause
+        )
 
     def _must_stand(self, now: Instant) -> bool:
         """Tell whether a vehicle that stood must not move again."""
         is_held = self._driving.status is TaskStatus.PAUSED_TASK or ERROR_HOLD in self._holds
         return is_held or now < self._rolls_until
-
-    def _braking_time(self) -> Duration:
-        state = self._watch.state
-        speed_mps = 0.0 if state is None else abs(state.speed_mps)
-        # Bounded, since a vehicle may report any speed, and the settings may have any braking.
-        return seconds(min(SPARE * speed_mps / self._watch.settings.braking_mps2, _LONGEST_S))
 
     def _judge(self, stop: _Stop, now: Instant) -> bool:
         """End the watch once the vehicle stands; tell anew when its pose is lost or is back."""

@@ -218,7 +218,8 @@ class TaskPlanner:
         task.advance(feedback, self._vehicle.state)
         self._keeper.note_driven(task, now)
         is_driving = feedback.goal == task.goal
-        self._vehicle.told(feedback.command, feedback.lookahead if is_driving else None)
+        if feedback.command is not None:
+            self._vehicle.told(feedback.command, feedback.lookahead if is_driving else None)
         self._outbox.task_changed = True
 
     def take_result(self, result: GoalResult, now: Instant) -> None:

@@ -8,9 +8,13 @@ from domain.inputs import VehicleReport
 from domain.outbox import Outbox
 from domain.snapshot import VehicleView
 from domain.tasks.settings import TaskSettings
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Point, VehicleState
 
+SPARE = 1.25
+"""A stop may take so many times as long as the assumed braking does."""
+
+_LONGEST_S = 600.0
 _AT_REST = DriveCommand(0.0, 0.0)
 
 
@@ -102,6 +106,12 @@ class VehicleWatch:
         if self._state is None or self._at is None or self.is_lost or self._at <= since:
             return None
         return abs(self._state.speed_mps)
+
+    def braking_time(self) -> Duration:
+        """Return the time that a stop may take at the speed that was heard last."""
+        speed_mps = 0.0 if self._state is None else abs(self._state.speed_mps)
+        # Bounded, since a vehicle may report any speed, and the settings may have any braking.
+        return seconds(min(SPARE * speed_mps / self.settings.braking_mps2, _LONGEST_S))
 
     def distance_to(self, point: Point) -> float | None:
         """Return the distance to a point, in m; None: the pose is unknown."""

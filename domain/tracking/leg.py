@@ -1,28 +1,12 @@
 """One line that a vehicle follows, up to the limits of its error and of time without progress."""
 
-from dataclasses import dataclass
-from math import inf, isfinite
+from math import isfinite
 
 from domain.paths.path import Path
-from domain.timebase import Duration, Instant, to_seconds
+from domain.timebase import Instant
+from domain.tracking.line_watch import GivenUpError, LegLimits, LineWatch
 from domain.tracking.tracker import ControlStep, PathTracker
 from domain.vehicle import VehicleState
-
-
-class GivenUpError(Exception):
-    """The goal is aborted; the message says why."""
-
-
-@dataclass(frozen=True, slots=True)
-class LegLimits:
-    """When a line is given up."""
-
-    max_cross_track_m: float
-    """Cross-track error, m, that is too large if it lasts."""
-    max_cross_track_for: Duration
-    no_progress_for: Duration
-    """This long without `least_progress_m` of progress."""
-    least_progress_m: float
 
 
 class Leg:
@@ -48,16 +32,12 @@ class Leg:
             now: The current time.
         """
         self.path = path
-        self._name = name
         self._controller = controller
         self._tracker = tracker
         self._target_index = target_index
         self.distance_m = 0.0
         """Distance of the vehicle along the line, m."""
-        self._best_m = -inf
-        """Largest distance along the line that counted as progress."""
-        self._best_at = now
-        self._off_since: Instant | None = None
+        self._watch = LineWatch(name, now)
 
     def follow(self, state: VehicleState) -> ControlStep:
         """Do one control step.
@@ -82,15 +62,4 @@ class Leg:
         Raises:
             GivenUpError: A limit was reached.
         """
-        error_m = abs(step.cross_track_error_m)
-        if error_m <= limits.max_cross_track_m:
-            self._off_since = None
-        elif self._off_since is None:
-            self._off_since = now
-        elif now - self._off_since >= limits.max_cross_track_for:
-            long_s = to_seconds(limits.max_cross_track_for)
-            raise GivenUpError(f"{error_m:.1f} m from {self._name} for {long_s:g} s")
-        if step.distance_m >= self._best_m + limits.least_progress_m:
-            self._best_m, self._best_at = step.distance_m, now
-        elif now - self._best_at >= limits.no_progress_for:
-            raise GivenUpError(f"no progress for {to_seconds(limits.no_progress_for):g} s")
+        self._watch.judge(step.cross_track_error_m, step.distance_m, limits, now)

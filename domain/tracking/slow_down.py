@@ -3,7 +3,8 @@
 from math import hypot, remainder, tau
 
 from domain.timebase import Duration, Instant, to_seconds
-from domain.tracking.leg import GivenUpError, Leg
+from domain.tracking.leg import Leg
+from domain.tracking.line_watch import GivenUpError
 from domain.tracking.tracker import ControlStep
 from domain.vehicle import VehicleState
 

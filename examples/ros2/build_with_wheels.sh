@@ -33,7 +33,7 @@ grep -rlZ /opt/python/ --include='*.cmake' "$work/venv/share" | xargs -0 sed -i 
     -e "s#/opt/python/[^;\"]*/include/python[0-9.]*#$include#g"
 
 export AMENT_PREFIX_PATH="$work/venv" CMAKE_PREFIX_PATH="$work/venv"
-for package in system_modes_msgs gem_state_msgs pilothouse_msgs; do
+for package in system_modes_msgs pilothouse_msgs; do
     echo "Building $package ..."
     {
         cmake -S "$here/interfaces/$package" -B "$work/$package" -DCMAKE_INSTALL_PREFIX="$prefix" \

@@ -8,7 +8,7 @@ must read.
 
 from collections.abc import Mapping
 
-from domain import commands, inputs, kept
+from domain import commands, controller, inputs, kept, process_terms
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
@@ -28,12 +28,18 @@ NAMES: Mapping[type, str] = {
     inputs.SourceFault: "source_fault",
     inputs.VehicleReport: "vehicle_report",
     inputs.DriveStatus: "drive_status",
+    process_terms.ProcessReport: "process_report",
     inputs.BackendStatus: "backend_status",
     inputs.ReportBacklog: "report_backlog",
     inputs.StorageStatus: "storage_status",
     GraphFault: "graph_fault",
     inputs.GoalFeedback: "goal_feedback",
     inputs.GoalResult: "goal_result",
+    controller.ControllerStatus: "controller_status",
+    controller.ControllerAnswer: "controller_answer",
+    controller.ControllerFeedback: "controller_feedback",
+    controller.ControllerResult: "controller_result",
+    controller.NavigationStatus: "navigation_status",
     inputs.TimePassed: "time_passed",
     inputs.ServiceStall: "service_stall",
     inputs.WriteRecord: "write_record",
@@ -48,6 +54,7 @@ NAMES: Mapping[type, str] = {
     inputs.AcknowledgeReactionRequest: "acknowledge_reaction_request",
     inputs.ShelveRequest: "shelve_request",
     inputs.UnshelveRequest: "unshelve_request",
+    process_terms.ProcessRequest: "process_request",
     inputs.TaskRequest: "task_request",
     inputs.CancelTaskRequest: "cancel_task_request",
     inputs.HoldRequest: "hold_request",
@@ -66,6 +73,8 @@ NAMES: Mapping[type, str] = {
     commands.Drive: "drive",
     commands.SendGoal: "send_goal",
     commands.PreemptGoal: "preempt_goal",
+    commands.StartProcess: "start_process",
+    commands.StopProcess: "stop_process",
     commands.TellStops: "tell_stops",
     commands.AskRelease: "ask_release",
     commands.AnswerOrder: "answer_order",
@@ -91,6 +100,7 @@ NAMES: Mapping[type, str] = {
     kept.KeptHold: "kept_hold",
     kept.KeptReaction: "kept_reaction",
     kept.KeptBound: "kept_bound",
+    kept.KeptProcess: "kept_process",
     kept.KeptTask: "kept_task",
     kept.KeptProgress: "kept_progress",
     # Events have the name that clients know as well.

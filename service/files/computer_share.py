@@ -92,6 +92,18 @@ def reactions_of_devices(model: SmhModel, robot: RobotSettings) -> dict[str, Com
     }
 
 
+def left_to_supervisor(
+    model: SmhModel, robot: RobotSettings
+) -> dict[ComputerName, tuple[LeftOut, ...]]:
+    """Return by device what it does not do of what the model says about its parts, if anything."""
+    signals = robot.to_signal_settings()
+    shares = {
+        device.name: sub_model(model, device.nodes, readable_signals(signals, device.signals))
+        for device in robot.to_device_settings(model)
+    }
+    return {name: share.left_out for name, share in shares.items() if share.left_out}
+
+
 def _share_of_device(model: SmhModel, robot: RobotSettings, name: ComputerName) -> ComputerShare:
     devices = {device.name: device for device in robot.to_device_settings(model)}
     if name not in devices:
@@ -153,6 +165,7 @@ def _restricted(
 def _without_robot(data: dict[str, Any], parts: Collection[PartName]) -> dict[str, Any]:
     """Return the settings of a device without what is the supervisor's: vehicle and targets."""
     data.pop("start_task", None)
+    data.pop("tasks", None)
     ros2 = data.get("ros2", {})
     ros2.pop("odometry", None)
     ros2.pop("command", None)

@@ -13,6 +13,10 @@ from domain.tracking.trackers import TRACKERS
 from service.files.csv_columns import column_names
 from service.files.settings_block import Seconds, SettingsBlock
 
+DEFAULT_CONTROLLER = "pure_pursuit"
+DEFAULT_SPEED_MPS = 2.8
+"""Of a task of which nothing else is said."""
+
 Positive: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]
 SomeSeconds: TypeAlias = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 
@@ -89,7 +93,15 @@ class StartTaskBlock(SettingsBlock):
     """Unit of the headings. Default: the one that is named in the file, or fits the path."""
     columns: Annotated[str, AfterValidator(_known_columns)] | None = None
     """Names of the columns, such as `s,x,y,yaw`. Default: those in the file, or `x,y,yaw`."""
-    controller: Controller = "pure_pursuit"
+    controller: Controller = DEFAULT_CONTROLLER
     """Path tracker."""
-    speed_mps: Positive = 2.8
+    speed_mps: Positive = DEFAULT_SPEED_MPS
     """Cruise speed, in m/s."""
+
+
+class TasksBlock(SettingsBlock):
+    """Tasks that clients begin by the name of a waypoint file."""
+
+    folder: str = Field(min_length=1, max_length=1_000)
+    """Folder of waypoint files; a relative path is relative to the robot file. The ROS service
+    `/serve_waypoints` drives a file in it by its name, and no other file."""

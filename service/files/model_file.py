@@ -10,6 +10,7 @@ import gc
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from importlib import resources
 from pathlib import Path
 
 from domain.conditions.check import Fault, check, terms_of
@@ -31,6 +32,9 @@ from service.files.source_text import SourceText
 from service.files.text_file import read_text_file
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
+EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
+"""The model of a service that is started without one."""
+
 MAX_FINDINGS = 1_000
 """Largest number of findings reported for one model; the rest is counted."""
 
@@ -42,6 +46,8 @@ class LoadedModel:
     model: SmhModel
     warnings: tuple[Finding, ...]
     text: str
+    name: str = ""
+    """Of its file, without the folder; empty: not known."""
 
 
 def load_model(path: Path) -> LoadedModel:
@@ -51,7 +57,7 @@ def load_model(path: Path) -> LoadedModel:
         UnreadableFileError: There is no such file, or it is not a text file.
         InvalidModelError: The model is invalid; `findings` hold all errors.
     """
-    return read_model(read_text_file(path))
+    return replace(read_model(read_text_file(path)), name=path.name)
 
 
 def read_model(text: str, signals: Collection[SignalSettings] | None = None) -> LoadedModel:
@@ -77,7 +83,9 @@ def with_signals(loaded: LoadedModel, signals: Collection[SignalSettings]) -> Lo
     Raises:
         InvalidModelError: A condition names another one.
     """
-    return read_model(loaded.text, signals) if loaded.model.has_conditions else loaded
+    if not loaded.model.has_conditions:
+        return loaded
+    return replace(read_model(loaded.text, signals), name=loaded.name)
 
 
 def check_model(

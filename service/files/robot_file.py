@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
+from domain.controller import ControllerSettings
 from domain.devices.settings import DeviceSettings, LeadSettings, ownership_text
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
@@ -18,6 +19,7 @@ from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import ESTOP_SIGNAL, SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
+from domain.processes.settings import ProcessSettings
 from domain.reactions.settings import RuleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
@@ -25,7 +27,7 @@ from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
 from service.files.device_faults import faults_of_devices
 from service.files.devices_block import DeviceName, DevicesBlock, device_settings
-from service.files.driving_block import DrivingBlock, StartTaskBlock
+from service.files.driving_block import DrivingBlock, StartTaskBlock, TasksBlock
 from service.files.includes import (
     INCLUDE,
     MAX_INCLUDED,
@@ -97,7 +99,7 @@ class RobotSettings(SettingsBlock):
     limits: LimitsBlock = LimitsBlock()
     """Limits on what clients may request."""
     ros2: Ros2Block = Ros2Block()
-    """ROS 2 topics of the robot. Without effect for a simulated robot."""
+    """ROS 2 topics of the robot. Without effect for a simulated robot, but for `messages`."""
     device: DeviceName | None = None
     """The device that this file is read for. `pilothouse device NAME` sets it in its record, so
     that the record can be replayed; leave it out of a file that all computers share."""
@@ -106,6 +108,9 @@ class RobotSettings(SettingsBlock):
     there are none. Without effect in simulations."""
     link: LinkBlock = LinkBlock()
     """How these computers reach each other. Without effect in simulations."""
+    tasks: TasksBlock | None = None
+    """Tasks that clients begin by the name of a waypoint file. Default: they cannot. Without effect
+    in simulations, which do not read files."""
     start_task: StartTaskBlock | None = None
     """A task that is submitted when the service starts. Not allowed in simulations, which do not
     read files."""
@@ -146,6 +151,14 @@ class RobotSettings(SettingsBlock):
             if node.checkpoints is not None
         }
 
+    def to_process_settings(self) -> dict[PartName, ProcessSettings]:
+        """Return when the processes of nodes are started again."""
+        return {
+            PartName(name): node.process.to_domain()
+            for name, node in self.nodes.items()
+            if node.process is not None
+        }
+
     def to_device_settings(self, model: SmhModel) -> tuple[DeviceSettings, ...]:
         """Return the devices, and which nodes and signals of the model each of them owns."""
         return device_settings(self.devices, self.signals, model)
@@ -169,6 +182,13 @@ class RobotSettings(SettingsBlock):
     def to_navigation_settings(self) -> NavigationSettings:
         """Return the settings of navigation."""
         return self.driving.to_navigation_settings()
+
+    def to_controller_settings(self) -> ControllerSettings | None:
+        """Return the deadlines of the external controller; None: the trackers on board drive."""
+        navigation = self.ros2.navigation
+        if navigation is None or self.backend != "ros2" or self.device is not None:
+            return None
+        return navigation.to_settings()
 
 
 def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
@@ -196,10 +216,16 @@ def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
 def written_out(text: str) -> str:
     """Return a valid robot file with its templates in their place, as a log keeps it.
 
-    It means the same when a later release has other templates.
+    It means the same when a later release has other templates. It has no environment of a process,
+    which may hold secrets.
     """
     data = _plain_text(text)
-    return _written(data) if data.get(INCLUDE) else text
+    return _written(data) if data.get(INCLUDE) or _has_environment(data) else text
+
+
+def written_with_backend(text: str, backend: str) -> str:
+    """Return a valid robot file as the log keeps it where the command named the backend."""
+    return _written({**_plain_text(text), "backend": backend})
 
 
 def written_for_device(text: str, device: str) -> str:
@@ -215,7 +241,24 @@ def _plain_text(text: str) -> dict[str, Any]:
 
 def _written(data: AnyMapping[str, Any]) -> str:
     merged = {key: value for key, value in with_includes(data).data.items() if key != INCLUDE}
+    if _has_environment(data):
+        merged["nodes"] = {name: _without_environment(node) for name, node in _nodes(data)}
     return json.dumps(merged, ensure_ascii=False, indent=2) + "\n"
+
+
+def _nodes(data: AnyMapping[str, Any]) -> Iterator[tuple[str, AnyMapping[str, Any]]]:
+    yield from data.get("nodes", {}).items()
+
+
+def _has_environment(data: AnyMapping[str, Any]) -> bool:
+    return any("environment" in node.get("process", {}) for _, node in _nodes(data))
+
+
+def _without_environment(node: AnyMapping[str, Any]) -> AnyMapping[str, Any]:
+    if "process" not in node:
+        return node
+    process = {key: value for key, value in node["process"].items() if key != "environment"}
+    return {**node, "process": process}
 
 
 def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSettings:
@@ -248,8 +291,13 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
             raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
     for keys, _, message in _faults(settings, model):
         raise InvalidValueError(message, _pointer(*merged.place_of(keys)))
-    # One computer simulates all of it.
-    return settings.model_copy(update={"devices": {}, "device": None})
+    # One computer simulates all of it, the trackers on board drive, and whoever sends settings runs
+    # no programs here.
+    nodes = {
+        name: node.model_copy(update={"process": None}) for name, node in settings.nodes.items()
+    }
+    alone = {"devices": {}, "device": None, "backend": "simulated", "nodes": nodes}
+    return settings.model_copy(update=alone)
 
 
 def _no_node(name: str, model: SmhModel) -> str:

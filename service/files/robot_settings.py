@@ -21,6 +21,7 @@ from domain.reactions.settings import RuleSettings
 from domain.timebase import Duration, seconds
 from service.files.checkpoints_block import CheckpointsBlock
 from service.files.declared_signal import STALE_BETWEEN, AnySignal, DeclaredSignal
+from service.files.process_block import ProcessBlock
 from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
 from service.files.source_block import MISSED_PERIODS, SourceBlock
 
@@ -167,7 +168,11 @@ class SignalsBlock(SettingsBlock):
 
 
 class NodeBlock(SettingsBlock):
-    """Settings of a node. All but `on_return` and `checkpoints` apply to simulated nodes only."""
+    """Settings of a node.
+
+    Beside `on_return` and `checkpoints`, `process` is for real nodes, and the others for simulated
+    ones.
+    """
 
     on_return: Literal["leave", "restore"] = "leave"
     """What happens when the node reappears and is not in its target state and mode: nothing, or a
@@ -189,6 +194,9 @@ class NodeBlock(SettingsBlock):
     checkpoints: CheckpointsBlock | None = None
     """Places in its program that the node reports by POST /nodes/{node}/checkpoints/{name}, and
     what is expected of them while it is active. Default: none are known."""
+    process: ProcessBlock | None = None
+    """The program of the node, which the service runs on this computer. Default: somebody else
+    starts it."""
 
 
 class ChangesBlock(SettingsBlock):

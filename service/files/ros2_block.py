@@ -6,9 +6,11 @@ from typing import Annotated, Literal, Self, TypeAlias, TypeVar
 
 from pydantic import AfterValidator, Field, field_validator, model_validator
 
+from domain.controller import ControllerSettings
 from domain.health.signals import SignalKind
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
+from domain.timebase import seconds
 from service.files.settings_block import Number, SettingsBlock, bare_names
 
 NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
@@ -32,7 +34,12 @@ _USUAL_FIELDS = {
 _PLAIN_TYPES = re.compile(r"std_msgs/msg/(Bool|String|Float(32|64)|U?Int(8|16|32|64))")
 
 
-def _topic(name: str) -> str:
+def topic_name(name: str) -> str:
+    """Return a full topic name.
+
+    Raises:
+        ValueError: It is none.
+    """
     if len(name) > _LONGEST or not re.fullmatch(_TOPIC, name):
         raise ValueError(
             f"invalid topic name {name!r:.60}; give the full name, such as /battery_state"
@@ -57,13 +64,18 @@ def _field(path: str) -> str:
 
 
 TopicName: TypeAlias = Annotated[
-    str, AfterValidator(_topic), Field(json_schema_extra={"pattern": _TOPIC})
+    str, AfterValidator(topic_name), Field(json_schema_extra={"pattern": _TOPIC})
 ]
 MessageType: TypeAlias = Annotated[
     str, AfterValidator(_type), Field(json_schema_extra={"pattern": _TYPE})
 ]
 FieldPath: TypeAlias = Annotated[
     str, AfterValidator(_field), Field(json_schema_extra={"pattern": _FIELD})
+]
+Deadline: TypeAlias = Annotated[float, Field(ge=0.1, le=60, allow_inf_nan=False)]
+Tolerance: TypeAlias = Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)]
+ActionType: TypeAlias = Literal[
+    "pilothouse_msgs/action/NavigateWaypoints", "nav2_msgs/action/FollowPath"
 ]
 Window: TypeAlias = Annotated[float, Field(gt=0, le=60, allow_inf_nan=False)]
 CommandType: TypeAlias = Literal[
@@ -163,9 +175,49 @@ class CommandBlock(SettingsBlock):
     the wheels of a vehicle at standstill."""
 
 
+class NavigationBlock(SettingsBlock):
+    """External controller that follows the paths of tasks, an action server."""
+
+    action: TopicName
+    """Full name of the action, such as /navigate_waypoints."""
+    type: ActionType = "pilothouse_msgs/action/NavigateWaypoints"
+    """Type of the action. FollowPath of Nav2 carries no speed: it drives at its own."""
+    frame_id: Annotated[str, Field(min_length=1, max_length=100)] = "map"
+    """Frame of the waypoints, for FollowPath."""
+    accepted_within_s: Deadline = 1.0
+    """Time in which a goal has to be accepted or rejected, in s."""
+    silent_for_s: Deadline = 1.0
+    """Time without feedback, in s, after which the goal is taken back."""
+    taken_back_within_s: Deadline = 1.0
+    """Time in which the end of a goal that was taken back has to be confirmed, in s, besides the
+    time to stop at `driving.braking_mps2`."""
+    stands_within_s: Deadline = 3.0
+    """Time in which the vehicle has to stand after the controller said that it arrived, in s."""
+    end_tolerance_m: Tolerance = 0.5
+    """Largest distance of the vehicle from the last waypoint, in m, when it arrived."""
+    claim_tolerance_m: Tolerance = 5.0
+    """How far ahead of the vehicle, in m, a waypoint may be that is said to be passed."""
+
+    def to_settings(self) -> ControllerSettings:
+        """Return the settings for the navigation."""
+        return ControllerSettings(
+            self.action,
+            seconds(self.accepted_within_s),
+            seconds(self.silent_for_s),
+            seconds(self.taken_back_within_s),
+            seconds(self.stands_within_s),
+            self.end_tolerance_m,
+            self.claim_tolerance_m,
+        )
+
+
 class Ros2Block(SettingsBlock):
     """ROS 2 topics of the robot."""
 
+    messages: Literal["pilothouse_msgs", "gem_state_msgs"] = "pilothouse_msgs"
+    """Package of the messages for signals and the state of the robot. `gem_state_msgs` has the same
+    fields under the names of smart_polaris; it has to be installed. Also in effect for rosbridge
+    clients of a simulated robot, who may name either."""
     signals: dict[str, SignalTopicBlock] = Field(default_factory=dict)
     """Topics of signals by name of the signal: the five default ones and the declared ones."""
     statistics: dict[str, StatisticBlock] = Field(default_factory=dict)
@@ -176,6 +228,9 @@ class Ros2Block(SettingsBlock):
     """Topic of the vehicle's odometry. Without it the pose is unknown and no task runs."""
     command: CommandBlock | None = None
     """Topic of the drive commands. Without it no commands are published."""
+    navigation: NavigationBlock | None = None
+    """External controller that follows the paths of tasks; it commands the vehicle itself, and
+    Pilothouse only while the vehicle must stop. Without it the trackers on board drive."""
 
     @field_validator("signals", "statistics")
     @classmethod

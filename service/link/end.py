@@ -16,7 +16,7 @@ from service.clock import Clock
 from service.codec.errors import CodecError
 from service.link.port import Link
 from service.link.status import LinkStatus
-from service.link.wire import decode, encode
+from service.link.wire import decode, encode_in_pieces
 from service.pacing import AT_ONCE, Alarm
 from service.ports import BackendMessage, Deliver
 
@@ -111,12 +111,13 @@ class LinkEnd:
         now = self._clock.now()
         for to, message in outputs.sendings:
             try:
-                text = encode(message)
+                texts = encode_in_pieces(message)
             except CodecError as error:
                 log.warning("a message for %s is not sent: %s", to, error)
                 continue
             self._status.note_sent(to, message, now)
-            self._link.send(to, text, may_be_lost=isinstance(message, Beat))
+            for text in texts:
+                self._link.send(to, text, may_be_lost=isinstance(message, Beat))
         self._waiting.extend(outputs.inputs)
         self._alarm.check()
 

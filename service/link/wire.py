@@ -6,12 +6,16 @@ The first byte says how the rest is written: as JSON, or as JSON that zlib made 
 import zlib
 
 from domain.errors import shortened
-from domain.link.messages import Message
+from domain.link.messages import Message, Report
+from domain.link.pieces import MAX_PIECES, cut
 from service.codec.codec import MAX_MESSAGE_BYTES, MESSAGES
 from service.codec.errors import CodecError
 
 PACKED_FROM = 1_000
 """Bytes from which a message is made smaller; a beat is shorter, and must not wait for that."""
+
+_COUNTS = (2, 4, 8, MAX_PIECES)
+"""Into how many pieces a report is cut: into as few of these as suffice."""
 
 _PLAIN = b"j"
 _PACKED = b"z"
@@ -25,7 +29,25 @@ def encode(message: Message) -> bytes:
     Raises:
         CodecError: It holds half a surrogate pair, or is too long to be read again.
     """
+    return _packed(MESSAGES.encode(message))
+
+
+def encode_in_pieces(message: Message) -> list[bytes]:
+    """Return a message as bytes: a report that is too long in pieces, anything else as one.
+
+    Raises:
+        CodecError: It holds half a surrogate pair, or is too long also in pieces.
+    """
     text = MESSAGES.encode(message)
+    if len(text) > MAX_MESSAGE_BYTES and isinstance(message, Report):
+        for count in _COUNTS:
+            texts = [MESSAGES.encode(piece) for piece in cut(message, count)]
+            if max(map(len, texts)) <= MAX_MESSAGE_BYTES:
+                return [_packed(each) for each in texts]
+    return [_packed(text)]
+
+
+def _packed(text: bytes) -> bytes:
     if len(text) > MAX_MESSAGE_BYTES:
         raise CodecError(f"a message has at most {MAX_MESSAGE_BYTES} bytes, not {len(text)}")
     if len(text) < PACKED_FROM:

@@ -6,7 +6,6 @@ else belongs to the node `pilothouse`.
 
 import asyncio
 import logging
-import re
 from collections.abc import Callable, Collection
 from contextlib import suppress
 from functools import partial
@@ -17,6 +16,7 @@ from domain.timebase import seconds
 from service.clock import Clock
 from service.ros.graph.conversion import fields_of
 from service.ros.graph.graph import Fields, Lane, Publisher, Qos, RosGraph, RosNode
+from service.ros.graph.names import is_allowed
 from service.ros.interface.endpoints import OWN_NODE, OfferedService, OfferedTopic, SubscribedTopic
 from service.ros.interface.fallback_types import (
     SERVICE_FALLBACKS,
@@ -26,6 +26,8 @@ from service.ros.interface.fallback_types import (
     TopicFallback,
 )
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.message_sets import MessageSet
+from service.ros.offered import OfferedNames
 
 log = logging.getLogger(__name__)
 
@@ -33,10 +35,6 @@ CALLER = Actor("ros")
 """Recorded as the caller or sender, since ROS does not identify it."""
 
 _LOOK_EVERY = seconds(0.5)
-_ROS_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
-_LONGEST = 225
-"""Most characters of a name. ROS allows 247, and gives each node services whose names are up to 22
-characters longer than that of the node."""
 
 
 class RosGateway:
@@ -66,7 +64,9 @@ class RosGateway:
         self._on_demand: dict[str, tuple[Publisher, Convert]] = {}
         """Topics that are listened to only while somebody subscribes."""
         self._missing_types: set[str] = set()
+        self._unheard_types: set[str] = set()
         self._odd_names: set[str] = set()
+        self._offered = OfferedNames()
 
     async def offer(self) -> None:
         """Create the nodes, services and topics.
@@ -75,7 +75,7 @@ class RosGateway:
 
         If a type is not installed, a standard type takes its place (`interface.fallback_types`).
         Services and topics without one, and those whose name ROS does not allow, are left out; the
-        log names them.
+        log names them, and lists what is offered.
         """
         for service in self._interface.services.values():
             if not service.of_a_node and self._is_allowed(service.name):
@@ -86,16 +86,15 @@ class RosGateway:
                 self._publish(topic)
                 await asyncio.sleep(0)
         for heard in self._interface.heard.values():
-            if heard.name not in self._mapped_topics and self._graph.has_type(heard.type):
+            if heard.name not in self._mapped_topics:
                 self._hear(heard)
-        problems = (
-            ("these names are not allowed", self._odd_names),
-            ("these types are not installed", self._missing_types),
-        )
-        for problem, names in problems:
-            if names:
-                listed = ", ".join(sorted(names))
-                log.warning("not offered in ROS 2, since %s: %s", problem, listed)
+        if self._odd_names:
+            names = ", ".join(sorted(self._odd_names))
+            log.warning("not offered in ROS 2, since these names are not allowed: %s", names)
+        _tell_missing("offered", self._missing_types)
+        _tell_missing("subscribed to", self._unheard_types)
+        for line in self._offered.lines(self._interface.parts):
+            log.info("ROS 2 %s", line)
 
     async def run(self) -> None:
         """Publish messages about events and states, until cancelled."""
@@ -118,14 +117,14 @@ class RosGateway:
 
     def _serve(self, service: OfferedService) -> None:
         carrier = SERVICE_FALLBACKS.get(service.type)
-        if self._graph.has_type(service.type):
-            answer = partial(_answer, service)
-            self._node(service.node).serve(service.name, service.type, answer)
-        elif carrier is not None and self._graph.has_type(carrier.type):
-            carried = partial(_answer_carried, service, carrier)
-            self._node(service.node).serve(service.name, carrier.type, carried)
-        else:
+        type_name, answer = service.type, partial(_answer, service)
+        if carrier is not None and not self._graph.has_type(type_name):
+            type_name, answer = carrier.type, partial(_answer_carried, service, carrier)
+        if not self._graph.has_type(type_name):
             self._missing_types.add(service.type)
+            return
+        self._node(service.node).serve(service.name, type_name, answer)
+        self._offered.services[service.name] = type_name
 
     def _publish(self, topic: OfferedTopic) -> None:
         carrier = TOPIC_FALLBACKS.get(topic.type)
@@ -136,15 +135,20 @@ class RosGateway:
             return
         qos = Qos.LATCHED if topic.latched else Qos.EVENTS
         publisher = self._node(topic.node).publisher(topic.name, carrier.type, qos)
+        self._offered.published[topic.name] = carrier.type
         if topic.on_demand:
             self._on_demand[topic.name] = (publisher, carrier.message)
         else:
             self._interface.listen(topic.name, partial(_send, publisher, carrier.message))
 
     def _hear(self, heard: SubscribedTopic) -> None:
+        if not self._graph.has_type(heard.type):
+            self._unheard_types.add(heard.type)
+            return
         take = partial(self._take, heard)
         qos = Qos.EVENTS if heard.needs_all else Qos.SENSOR
         self._node(OWN_NODE).subscribe(heard.name, heard.type, qos, fields_of, take)
+        self._offered.subscribed[heard.name] = heard.type
 
     def _take(self, heard: SubscribedTopic, message: Fields) -> None:
         """Submit a message; a rejected one, which is logged, must not end the subscription."""
@@ -158,10 +162,20 @@ class RosGateway:
 
     def _is_allowed(self, name: str) -> bool:
         """Tell whether ROS allows a name; models may have others."""
-        allowed = len(name) <= _LONGEST and _ROS_NAME.fullmatch(name) is not None
+        allowed = is_allowed(name)
         if not allowed:
             self._odd_names.add(name.rpartition("/")[0])
         return allowed
+
+
+def _tell_missing(what: str, types: Collection[str]) -> None:
+    """Log which types are not installed; our own ones are to be built, and often are not."""
+    own = {name for name in types if name.startswith(f"{MessageSet.PILOTHOUSE}/")}
+    for level, found in ((logging.INFO, own), (logging.WARNING, {*types} - own)):
+        if found:
+            listed = ", ".join(sorted(found))
+            message = "not %s in ROS 2, since these types are not installed: %s"
+            log.log(level, message, what, listed)
 
 
 def _as_it_is(message: Fields) -> Fields:

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 from domain.commands import Drive, NodeCommand
@@ -10,6 +10,7 @@ from domain.inputs import BackendStatus, NodeAnswer, NodeReport, ReportBacklog
 from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import RobotMessage, SimulatedRobot
+from domain.simulation.vehicle_settings import VehicleFault
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.clock import Clock
@@ -77,13 +78,24 @@ class SimulatedBackend:
         self.robot.handle(command, self._clock.now())
         self._pacer.touch()
 
-    def set_fault(self, node: PartName, fault: Fault | None) -> None:
+    @property
+    def node_faults(self) -> Mapping[PartName, str | None]:
+        """Return all nodes with their faults; None: it has none."""
+        return self.robot.nodes.faults()
+
+    @property
+    def vehicle_fault(self) -> str | None:
+        """Return the fault of the vehicle; None: it has none."""
+        return self.robot.vehicle.fault
+
+    def set_fault(self, node: PartName, fault: str | None) -> None:
         """Inject a fault into a node; None: end it.
 
         Raises:
             UnknownPartError: There is no such node.
         """
-        self.robot.nodes.set_fault(node, fault, self._clock.now())
+        own = None if fault is None else Fault(fault)
+        self.robot.nodes.set_fault(node, own, self._clock.now())
         self._pacer.touch()
 
     def set_parameters(self, node: PartName, values: Parameters) -> None:
@@ -98,7 +110,8 @@ class SimulatedBackend:
         self.robot.nodes.set_parameters(node, values, self._clock.now())
         self._pacer.touch()
 
-    def set_vehicle_reporting(self, reporting: bool) -> None:
-        """Stop or resume the odometry of the vehicle."""
-        self.robot.vehicle.set_reporting(reporting, self._clock.now())
+    def set_vehicle_fault(self, fault: str | None) -> None:
+        """Inject a fault into the vehicle; None: end it."""
+        own = None if fault is None else VehicleFault(fault)
+        self.robot.vehicle.set_fault(own, self._clock.now())
         self._pacer.touch()

@@ -31,6 +31,7 @@ class VirtualService:
         self.supervisor = Supervisor(
             loaded, onboard, clock, self.backend, self.backend.readings, robot.what, events
         )
+        self.supervisor.live_faults = self.backend
         # A request that waits for the end of a change is answered at once.
         self.supervisor.change_ends.stop()
 

@@ -164,7 +164,7 @@ async def test_a_robot_that_loses_its_pose_stops_and_goes_on_when_it_is_back(
 ) -> None:
     await drive.submit_task(STRAIGHT)
     await drive.advance(3)
-    drive.robot.backend.set_vehicle_reporting(False)
+    drive.robot.backend.set_vehicle_fault("silent")
     await drive.advance(0.4)
 
     assert drive.drives()[-1] == 0.0
@@ -177,7 +177,7 @@ async def test_a_robot_that_loses_its_pose_stops_and_goes_on_when_it_is_back(
 
     await drive.advance(3)
     assert (await drive.task())["status"] == "PAUSING", "nobody has seen it stand"
-    drive.robot.backend.set_vehicle_reporting(True)
+    drive.robot.backend.set_vehicle_fault(None)
     await drive.advance(15)
     assert (await drive.task())["status"] == "SUCCEEDED"
     assert drive.kinds().count("task.resumed") == 1

@@ -121,6 +121,22 @@ def test_the_page_of_a_device_says_whose_word_counts_as_that_changes(
     assert complaints.messages == []
 
 
+def test_a_device_shows_neither_map_nor_task_which_are_the_supervisors(
+    desktop: Page, phone: Page, service: Service
+) -> None:
+    del service
+    for page in (desktop, phone):
+        tell(page, lambda: {"this_device": this_device("arm", "supervisor")})
+        expect(page.locator("#map")).to_be_hidden()
+    expect(desktop.locator("#log")).to_be_visible()
+
+    phone.get_by_role("tab", name="Status").focus()
+    phone.keyboard.press("ArrowRight")
+
+    expect(phone.get_by_role("tab", name="Parts")).to_be_focused()
+    expect(phone.get_by_role("tab", name="Map")).to_have_count(0)
+
+
 def test_on_a_phone_the_band_of_the_stop_names_the_lost_device(
     phone: Page, service: Service
 ) -> None:

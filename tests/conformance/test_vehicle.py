@@ -72,7 +72,7 @@ class Simulated:
         await self._clock.advance(by_s)
 
     def lose(self, *, lost: bool) -> None:
-        self._simulated.set_vehicle_reporting(not lost)
+        self._simulated.set_vehicle_fault("silent" if lost else None)
 
 
 class SimulatedWithInertia(Simulated):

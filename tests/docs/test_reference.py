@@ -21,6 +21,7 @@ from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.computers import ComputerName, DeviceState, PeerStop, StopId
 from domain.conditions.condition import Condition
+from domain.controller import NavigationStatus
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
 from domain.graph_terms import GraphFault, GraphFaultKind
@@ -57,6 +58,8 @@ from domain.kept import KeptHold, KeptTarget
 from domain.lifecycle import LifecycleState
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import Rule
+from domain.process_terms import ProcessAction, ProcessExit, ProcessReport, ProcessRequest
+from domain.processes.settings import ProcessSettings
 from domain.snapshot import ErrorKey
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.supervision import Supervision, SupervisionSettings
@@ -241,6 +244,11 @@ def a_lost_drive_process() -> list[RecordedEvent]:
     return told(DriveStatus(available=False, reason="it has ended"), DriveStatus(available=True))
 
 
+def a_lost_controller() -> list[RecordedEvent]:
+    gone = NavigationStatus(available=False, reason="it gave no feedback for 1 s")
+    return told(gone, NavigationStatus(available=True))
+
+
 def a_write() -> list[RecordedEvent]:
     return told(
         WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", Actor("http:10.0.0.7"))
@@ -380,6 +388,27 @@ def a_reaction_on_a_device() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_process_that_is_given_up() -> list[RecordedEvent]:
+    """The process of a node crashes too often, and an operator starts it again."""
+    processes = {BASE: ProcessSettings(starts=2, first_back_off=seconds(1))}
+    core = Supervision(actuation_model(), SupervisionSettings(processes=processes), 0)
+    crash = ProcessReport(BASE, exit=ProcessExit(1))
+    start = ProcessRequest(BASE, ProcessAction.START, Actor("ada"))
+    inputs: tuple[Input, ...] = (
+        ProcessReport(BASE),
+        ProcessReport(BASE, 4001),
+        crash,
+        TimePassed(),
+        crash,
+        start,
+    )
+    return [
+        event
+        for at, given in enumerate(inputs)
+        for event in core.handle(given, seconds(2 * at)).events
+    ]
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -421,6 +450,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_lost_backend,
         a_stop_on_another_computer,
         a_lost_drive_process,
+        a_lost_controller,
         a_write,
         a_stall,
         a_restart,
@@ -437,6 +467,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_wait,
         a_lost_device,
         a_step_left_out,
+        a_process_that_is_given_up,
         the_examples,
     )
     for event in (event for story in stories for event in story()):

@@ -20,6 +20,7 @@ from tests.support.container import (
     own_command,
     serving,
 )
+from tests.support.shared import PROJECT
 
 pytestmark = pytest.mark.image
 
@@ -57,6 +58,18 @@ def test_the_robot_is_changed_with_the_token(service: ServiceInContainer) -> Non
     )
 
     assert (changed.status_code, changed.json()["status"]) == (200, "succeeded")
+
+
+def test_the_example_loop_is_driven(service: ServiceInContainer) -> None:
+    # Its headings are compared with its path, for which numpy needs modules that it loads late.
+    track = (PROJECT / "examples" / "tracks" / "loop.csv").read_bytes()
+    headers = BEARER | {"Content-Type": "text/csv"}
+
+    given = httpx.post(f"{service.url}/tasks", content=track, headers=headers, timeout=30)
+    cancelled = httpx.delete(f"{service.url}/tasks/current", headers=BEARER)
+
+    assert given.status_code == 202, given.text
+    assert cancelled.is_success
 
 
 def test_a_simulation_runs_in_the_process_that_is_kept_for_it(service: ServiceInContainer) -> None:

@@ -1,16 +1,19 @@
 """Three computers in networks of their own, whose links are cut and lose packets."""
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
-from functools import partial
-from typing import Any
+from collections.abc import Iterator
 
 import pytest
 
-from tests.support.namespaces import Host, Network, started, why_not
-from tests.support.process import COMMAND
-from tests.support.shared import PROJECT
+from tests.support.namespaces import why_not
+from tests.support.robot_in_networks import (
+    OFFLINE_AFTER_S,
+    Robot,
+    actual,
+    is_stopped,
+    robot_in_networks,
+    until,
+)
 
 pytest.importorskip("zenoh", reason="the extra `link` is not installed")
 _WHY_NOT = why_not()
@@ -20,67 +23,15 @@ pytestmark = [
 ]
 
 LATE_WITHIN_S, LOST_WITHIN_S = 0.7, 1.8
-OFFLINE_AFTER_S = 2.0
-START_WITHIN_S = 90.0
 SEEN_S = 0.3
 """What a busy machine and the asking take on top."""
-PATIENCE_S = 20.0
-MODEL = PROJECT / "service" / "example" / "actuation.yaml"
-ROBOT = f"""\
-name: lawn
-link: {{listen: ["tcp/0.0.0.0:7470"], connect: ["tcp/ADDRESS:7470"]}}
-devices:
-  base:
-    parts: [drive_base]
-    offline: {{after_s: {OFFLINE_AFTER_S}, target: {{drive_base: inactive}}}}
-  arm: {{parts: [manipulator]}}
-nodes:
-  drive_base: {{deactivate_s: 0.1, activate_s: 0.1, configure_s: 0.1, set_parameters_s: 0.1}}
-"""
-
-
-class Robot:
-    """The robot: its network, and its computers."""
-
-    def __init__(self, network: Network) -> None:
-        self.network = network
-        self.supervisor, self.base, self.arm = (
-            network.hosts[name] for name in ("supervisor", "base", "arm")
-        )
-
-    def states(self) -> dict[str, str]:
-        """Return how the supervisor's connection to each device is."""
-        return {
-            item["device"]: item["state"]
-            for item in self.supervisor.ask("GET", "/devices")["items"]
-        }
-
-    def are_connected(self) -> bool:
-        """Tell whether the supervisor deals with both devices."""
-        return set(self.states().values()) == {"connected"}
-
-    def newest(self, host: Host) -> int:
-        """Return the id of the newest event."""
-        return int(host.ask("GET", "/events?limit=1&before=1000000000")["items"][-1]["id"])
-
-    def events(self, host: Host, after: int, kind: str) -> list[dict[str, Any]]:
-        """Return the data of the events of a kind since one."""
-        path = f"/events?after={after}&kind={kind}&limit=1000"
-        return [event["data"] for event in host.ask("GET", path)["items"]]
+LINK = '{listen: ["tcp/0.0.0.0:7470"], connect: ["tcp/ADDRESS:7470"]}'
 
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Robot]:
     folder = tmp_path_factory.mktemp("robot")
-    with Network(["supervisor", "base", "arm"]) as network, ExitStack() as stack:
-        robot = Robot(network)
-        file = folder / "robot.yaml"
-        file.write_text(ROBOT.replace("ADDRESS", robot.supervisor.address))
-        options = (str(MODEL), "--robot", str(file), "--data", ":memory:", "--insecure-link")
-        stack.enter_context(started(robot.supervisor, *COMMAND, "serve", *options))
-        stack.enter_context(started(robot.base, *COMMAND, "device", "base", *options))
-        stack.enter_context(started(robot.arm, *COMMAND, "device", "arm", *options))
-        until(lambda: _answers(robot) and robot.are_connected(), START_WITHIN_S)
+    with robot_in_networks(folder, LINK, "--insecure-link") as robot:
         yield robot
 
 
@@ -92,31 +43,6 @@ def robot(running: Robot) -> Robot:
     running.supervisor.ask("POST", "/systems/actuation/mode?wait=20", {"mode": "PERFORMANCE"})
     assert actual(running.supervisor, "systems/actuation") == ("active", "PERFORMANCE")
     return running
-
-
-def until(condition: Callable[[], bool], within_s: float = PATIENCE_S) -> float:
-    """Wait until something holds; return how many seconds that took."""
-    begun = time.monotonic()
-    while not condition():
-        assert time.monotonic() - begun < within_s, f"not within {within_s} s"
-        time.sleep(0.02)
-    return time.monotonic() - begun
-
-
-def actual(host: Host, part: str) -> tuple[str, str | None]:
-    """Return the actual state and mode of a part, as a computer knows it."""
-    found = host.ask("GET", f"/{part}")["actual"]
-    return found["state"], found["mode"]
-
-
-def _answers(robot: Robot) -> bool:
-    try:
-        robot.states()
-        robot.base.ask("GET", "/livez")
-        robot.arm.ask("GET", "/livez")
-    except OSError:
-        return False
-    return True
 
 
 def test_a_cut_off_device_is_lost_in_time_does_what_it_is_to_and_is_adopted(robot: Robot) -> None:
@@ -198,17 +124,17 @@ def test_a_stop_at_a_device_that_is_cut_off_stops_the_robot_once_it_is_back(robo
     robot.arm.ask("PUT", "/emergency_stop", {"engaged": True, "reason": "a hand in the arm"})
     robot.supervisor.ask("PUT", "/emergency_stop", {"engaged": True, "reason": "a test"})
     robot.supervisor.ask("PUT", "/emergency_stop", {"engaged": False})
-    assert not robot.supervisor.ask("GET", "/emergency_stop")["engaged"]
+    assert not is_stopped(robot.supervisor)
 
     robot.network.heal()
-    until(lambda: robot.supervisor.ask("GET", "/emergency_stop")["engaged"])
-    until(lambda: robot.base.ask("GET", "/emergency_stop")["engaged"])
+    until(lambda: is_stopped(robot.supervisor))
+    until(lambda: is_stopped(robot.base))
     # A stop is taken at once; a release only counts on a connection.
     until(robot.are_connected)
 
     robot.supervisor.ask("PUT", "/emergency_stop", {"engaged": False})
-    for host in (robot.supervisor, robot.base, robot.arm):
-        until(partial(_is_released, host))
+    hosts = (robot.supervisor, robot.base, robot.arm)
+    until(lambda: not any(is_stopped(host) for host in hosts))
 
 
 def test_a_link_that_loses_packets_is_whole_again_once_it_loses_none(robot: Robot) -> None:
@@ -224,7 +150,3 @@ def test_a_link_that_loses_packets_is_whole_again_once_it_loses_none(robot: Robo
 def _agree(robot: Robot) -> bool:
     node = "nodes/drive_base"
     return actual(robot.supervisor, node) == actual(robot.base, node)
-
-
-def _is_released(host: Host) -> bool:
-    return not host.ask("GET", "/emergency_stop")["engaged"]

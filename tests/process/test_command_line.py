@@ -267,3 +267,11 @@ def test_zsh_can_read_its_script() -> None:
     script = run("completion", "zsh")[1]
 
     assert subprocess.run(["zsh", "-n"], input=script, text=True, check=False).returncode == 0
+
+
+def test_a_tracker_without_ros_2_says_what_to_do_about_it() -> None:
+    code, _, complaints = run("tracker", "--tracker", "stanley")
+
+    assert code == 2
+    assert "source the setup.bash of your ROS 2 distribution" in complaints
+    assert "Traceback" not in complaints

@@ -182,8 +182,8 @@ def _act(robot: HttpRobot, step: dict[str, Any]) -> None:
         case {"node": node, "fault": fault}:
             recovers = fault == "recover"
             robot.backend.set_fault(PartName(node), None if recovers else Fault(fault))
-        case {"vehicle": reporting}:
-            robot.backend.set_vehicle_reporting(reporting == "recover")
+        case {"vehicle": fault}:
+            robot.backend.set_vehicle_fault(None if fault == "recover" else fault)
         case {"hold": True}:
             operator.hold(reason="test")
         case {"hold": False}:

@@ -1,10 +1,11 @@
-"""What docs/ros2.md shows is done, with real nodes, and compared with what comes."""
+"""What the pages about ROS 2 show is done, with real nodes, and compared with what comes."""
 
 import json
 import os
 import re
 import shlex
 import shutil
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
@@ -24,7 +25,10 @@ pytestmark = [
     pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl"),
 ]
 
-PAGE = PROJECT / "docs" / "ros2.md"
+PAGES = [
+    PROJECT / "docs" / "ros2.md",
+    PROJECT / "docs" / "how-to" / "start-a-robots-processes.md",
+]
 HERE = "needs ROS 2"
 """The mark of the commands that are run here and by no other test."""
 DOMAIN = "ROS_DOMAIN_ID"
@@ -70,7 +74,9 @@ class Reader:
 
     def _serve(self, *arguments: str) -> None:
         self._pilothouse.close()
-        command = ("env", "-C", str(self._home), *COMMAND)
+        # What the service starts finds the Python of the tests, as what the reader starts does.
+        path = f"PATH={Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+        command = ("env", "-C", str(self._home), path, *COMMAND)
         process = self._pilothouse.enter_context(service(*arguments, command=command))
         self._address = process.url.removeprefix("http://")
 
@@ -98,17 +104,18 @@ def _difference(shown: Block | None, printed: str) -> str | None:
     return next(iter(missing_lines(shown.text, printed, vary=False)), None)
 
 
-def blocks_to_do() -> Iterator[tuple[Block, Block | None]]:
-    """Yield what the page says is to be done with ROS 2, each with what it shows of it."""
-    blocks = read_blocks(PAGE)
+def blocks_to_do(page: Path) -> Iterator[tuple[Block, Block | None]]:
+    """Yield what a page says is to be done with ROS 2, each with what it shows of it."""
+    blocks = read_blocks(page)
     for number, block in enumerate(blocks):
         if block.marks.get("not run") == HERE:
             following = blocks[number + 1 : number + 2]
             yield block, following[0] if following and following[0].is_output else None
 
 
-def test_the_page_can_be_followed_to_its_end(tmp_path: Path) -> None:
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_a_page_can_be_followed_to_its_end(page: Path, tmp_path: Path) -> None:
     with ExitStack() as owner:
         reader = Reader(tmp_path, owner)
-        for block, shown in blocks_to_do():
+        for block, shown in blocks_to_do(page):
             reader.do(block, shown)

@@ -1,7 +1,7 @@
 """Pilothouse in a real ROS 2 graph: what tools and clients find there, and what they can do.
 
 The robot behind it is simulated; real nodes are met in `test_annex4.py`. The types of
-`system_modes_msgs` and `gem_state_msgs` are not installed here, see `test_interfaces.py` for them.
+`system_modes_msgs` and `pilothouse_msgs` are not installed here, see `test_interfaces.py` for them.
 """
 
 import asyncio

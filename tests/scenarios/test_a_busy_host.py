@@ -66,7 +66,7 @@ def test_a_pose_that_is_lost_during_that_second_still_holds_the_task(
         supervisor, backend = make_live_robot(clock)
         async with running(supervisor):
             await drive(supervisor)
-            backend.set_vehicle_reporting(False)
+            backend.set_vehicle_fault("silent")
             await asyncio.sleep(0.1)
             block(BLOCKED_S)
             await clock.sleep_until(clock.now() + seconds(0.5))

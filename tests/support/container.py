@@ -22,12 +22,8 @@ SECRET = "/run/secrets/pilothouse_token"
 PATIENCE_S = 20.0
 
 _CACHE = Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pilothouse"
-_BUILDAH = (
-    "buildah",
-    *("--storage-driver", "vfs"),
-    *("--root", str(_CACHE / "images")),
-    *("--runroot", str(_CACHE / "run")),
-)
+# Another one is given by docker/with_podman_here.sh.
+_ENVIRONMENT = {"CONTAINERS_STORAGE_CONF": str(_CACHE / "storage.conf")} | os.environ
 
 
 def why_not() -> str | None:
@@ -37,7 +33,10 @@ def why_not() -> str | None:
     if shutil.which("buildah") is None:
         return "buildah is not installed"
     found = subprocess.run(
-        [*_BUILDAH, "inspect", "--type", "image", IMAGE], capture_output=True, check=False
+        ["buildah", "inspect", "--type", "image", IMAGE],
+        env=_ENVIRONMENT,
+        capture_output=True,
+        check=False,
     )
     return None if found.returncode == 0 else "the image is not built; see `make test-image`"
 
@@ -91,7 +90,7 @@ class Container:
         options = [f"--env={name}={value}" for name, value in (environment or {}).items()]
         options += [f"--volume={volume}" for volume in volumes]
         return Process(
-            [*_BUILDAH, "run", "--isolation", "chroot", *options, self._name, "--", *command]
+            ["buildah", "run", "--isolation", "chroot", *options, self._name, "--", *command]
         )
 
     def run(self, command: Sequence[str]) -> tuple[int, str]:
@@ -155,7 +154,9 @@ class Process:
         self._output: IO[str] = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self.started_at = time.monotonic()
         """In s."""
-        self._buildah = subprocess.Popen(command, stdout=self._output, stderr=subprocess.STDOUT)
+        self._buildah = subprocess.Popen(
+            command, env=_ENVIRONMENT, stdout=self._output, stderr=subprocess.STDOUT
+        )
 
     def __enter__(self) -> "Process":
         return self
@@ -200,7 +201,9 @@ class Process:
 
 
 def _buildah(*arguments: str) -> str:
-    done = subprocess.run([*_BUILDAH, *arguments], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["buildah", *arguments], env=_ENVIRONMENT, capture_output=True, text=True, check=True
+    )
     return done.stdout.strip()
 
 

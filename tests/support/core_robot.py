@@ -7,6 +7,7 @@ from domain.commands import Command, Drive, LinkCommand, NodeCommand
 from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, Input, TimePassed
+from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault, NodeSettings
@@ -33,7 +34,7 @@ class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
     ) -> None:
         self.now = start
         self.model = model
-        self.onboard = make_onboard(model, start, settings)
+        self.onboard = self.make(model, start, settings)
         self.core = self.onboard.core
         by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
         self.robot = SimulatedRobot(model, start, by_name, vehicle)
@@ -44,6 +45,12 @@ class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
         self.told_others: list[Command] = []
         """What other computers of the robot were told."""
         self.advance(0)
+
+    def make(
+        self, model: SmhModel, start: Instant, settings: SupervisionSettings | None
+    ) -> Onboard:
+        """Return the core."""
+        return make_onboard(model, start, settings)
 
     def give(self, given: Input) -> Outputs:
         """Hand one input to the core, and what it asks to the nodes."""

@@ -112,10 +112,13 @@ class DeviceRobot(CoreRobot):
 
     def answer_to(self, request: int) -> AnswerOrder:
         """Return what the supervisor is told of an order."""
-        (found,) = [
-            told for told in self.told if isinstance(told, AnswerOrder) and told.request == request
-        ]
+        (found,) = self.answers_to(request)
         return found
+
+    def answers_to(self, request: int) -> list[AnswerOrder]:
+        """Return all that the supervisor is told of an order."""
+        answers = (told for told in self.told if isinstance(told, AnswerOrder))
+        return [answer for answer in answers if answer.request == request]
 
     @property
     def lead(self) -> LeadView:

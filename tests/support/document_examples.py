@@ -26,14 +26,17 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
+from domain.processes.settings import ProcessSettings
 from domain.snapshot import Severity
 from domain.supervision import SupervisionSettings
 from domain.timebase import seconds
 from domain.windows.settings import Statistic, WindowSettings
-from tests.support.document_story import CHECKPOINTS, CSV, JSON, REACTING, STORY, Asked
+from service.ports import ProcessOutput
+from tests.support.document_story import CHECKPOINTS, CSV, JSON, PROCESS_OF, REACTING, STORY, Asked
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.manual_clock import ManualClock
+from tests.support.process_runner import ScriptedProcesses
 from tests.support.robot_with_devices import ARM_COMPUTER, DEVICES, ToldLink, heard, status
 from tests.support.shared import PROJECT
 from tests.support.stored_service import stored_service
@@ -57,6 +60,7 @@ _BATTERY_SLOPE = SignalSettings(
 _SETTINGS = SupervisionSettings(
     (*default_signals(), _BATTERY_SLOPE),
     checkpoints=CHECKPOINTS,
+    processes={PROCESS_OF: ProcessSettings()},
     devices={ARM_COMPUTER: DEVICES[ARM_COMPUTER]},
 )
 _EXCERPT_LINES = 4
@@ -70,6 +74,7 @@ async def record() -> Examples:
         robot.supervisor.submit(status(ARM_COMPUTER))
         await robot.pass_time(1)
         robot.supervisor.link = ToldLink({ARM_COMPUTER: heard(robot.clock.now())})
+        _let_run(robot)
         requests = [
             _exchange(asked, await _answer_of_a_record(asked))
             if asked.is_recorded
@@ -79,6 +84,14 @@ async def record() -> Examples:
         text = Examples(requests=requests, stream=await _messages(robot)).model_dump_json()
         text = text.replace(robot.supervisor.epoch, EPOCH)
         return Examples.model_validate_json(text.replace(assembled_page().version, PAGE_VERSION))
+
+
+def _let_run(robot: HttpRobot) -> None:
+    """Let a node have a process that runs."""
+    runner = ScriptedProcesses(robot.supervisor, PROCESS_OF)
+    runner.printed = ProcessOutput(("base 1.4 is up", "listening on /dev/ttyUSB0"), ())
+    runner.is_ready()
+    runner.runs(4711)
 
 
 def _exchange(asked: Asked, answer: httpx.Response) -> Exchange:

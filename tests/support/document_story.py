@@ -106,6 +106,8 @@ OVER = {"active": False}
 KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
 CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
 """What the robot of the story supervises of its nodes."""
+PROCESS_OF = PartName("drive_base")
+"""The node whose process is run."""
 
 _MODES_AND_STATES = (
     Asked("GET /systems", "After the start"),
@@ -208,6 +210,24 @@ _HEALTH = (
         body={"value": 30.0, "publishing": True},
         then_s=1,
     ),
+    Asked("GET /simulated", "All is well"),
+    Asked("PATCH /simulated/vehicle", "Lose the pose", body={"fault": "silent"}, then_s=1),
+    Asked("PATCH /simulated/vehicle", "Find it again", body={"fault": "recover"}, then_s=1),
+    Asked(
+        "PATCH /simulated/nodes/{node}",
+        "Refuse all commands",
+        {"node": "manipulator"},
+        body={"fault": "refuse"},
+    ),
+    Asked(
+        "PATCH /simulated/nodes/{node}",
+        "Take them again",
+        {"node": "manipulator"},
+        body={"fault": "recover"},
+        then_s=1,
+    ),
+    Asked("GET /nodes/{part}/process", "One that runs", BASE),
+    Asked("POST /nodes/{part}/process", "Restart it", BASE, body={"action": "restart"}),
     Asked("GET /devices", "One that is connected"),
     Asked(
         "PUT /devices/{part}/errors/{error}/shelf",

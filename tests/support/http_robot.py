@@ -99,6 +99,7 @@ class HttpRobot:
             simulated=robot.what,
             stores=Stores(trends=Trends((settings or SupervisionSettings()).signals)),
         )
+        self.supervisor.live_faults = self.backend
         self.app = create_app(
             self.supervisor,
             allowed_hosts=["robot"],

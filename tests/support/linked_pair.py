@@ -45,6 +45,8 @@ class Process:
         self.machine = machine
         self.inputs: list[tuple[Instant, Input]] = []
         self.is_running = True
+        self.is_hidden = False
+        """It hears, and is not heard."""
 
     @property
     def statuses(self) -> list[tuple[float, str]]:
@@ -179,6 +181,14 @@ class LinkedRobot:
         """End a process."""
         process.is_running = False
 
+    def hide(self, process: Process) -> None:
+        """Let nothing that a process sends arrive any more; it hears all."""
+        process.is_hidden = True
+
+    def show(self, process: Process) -> None:
+        """Let arrive again what a process sends."""
+        process.is_hidden = False
+
     def way(self, sender: ComputerName, to: ComputerName) -> Way:
         """Return how messages go from one computer to another."""
         return self.ways.setdefault((sender, to), Way())
@@ -252,6 +262,8 @@ class LinkedRobot:
             self.sent.append((self.now, to, message))
             way = self.way(process.name, to)
             if way.loses_beats and isinstance(message, Beat):
+                continue
+            if process.is_hidden:
                 continue
             if not way.is_cut:
                 extra = 0 if isinstance(message, Beat) else way.order_delay

@@ -170,15 +170,34 @@ def frame(at: str = AT, **members: object) -> Json:
     return {"type": "state", "seq": 1, "at": at, "system_state": system_state(), **members}
 
 
+def graph(*parts: Json, settled: bool = True, at: str = AT) -> Json:
+    """Return a frame of what was observed in a ROS 2 graph."""
+    return {
+        "type": "graph",
+        "at": at,
+        "model": "models/robot.yaml",
+        "settled": settled,
+        "parts": named("name", *parts),
+    }
+
+
 def named(key: str, *items: Json) -> dict[str, Json]:
     """Return items by what they have under a key."""
     return {item[key]: item for item in items}
 
 
-def hello(epoch: str = "one", started_at: str = AT, *, boot: int = 1, newest: int = 0) -> Json:
+def hello(
+    epoch: str = "one",
+    started_at: str = AT,
+    *,
+    boot: int = 1,
+    newest: int = 0,
+    model: str = "robot.yaml",
+) -> Json:
     """Return the first frame of a connection."""
     return {
         "type": "hello",
+        "model": model,
         "epoch": epoch,
         "boot": boot,
         "started_at": started_at,

@@ -145,10 +145,10 @@ def _serving(*command: str) -> Iterator[ServiceProcess]:
             process.kill()
 
 
-def run(*arguments: str) -> tuple[int, str, str]:
+def run(*arguments: str, within_s: float = _PATIENCE_S) -> tuple[int, str, str]:
     """Run `pilothouse` to its end; return the exit code, its output, and what it complained of."""
     done = subprocess.run(
-        [*COMMAND, *arguments], capture_output=True, text=True, timeout=_PATIENCE_S, check=False
+        [*COMMAND, *arguments], capture_output=True, text=True, timeout=within_s, check=False
     )
     return done.returncode, done.stdout, done.stderr
 

@@ -41,13 +41,16 @@ class RobotOfComputers:
         folder: For its files.
         devices: The block `devices` of its robot file, as YAML.
         more: More of the robot file.
+        link: The block `link` of its robot file; None: without certificates, at a free port.
     """
 
-    def __init__(self, folder: Path, devices: str = DEVICES, more: str = "") -> None:
+    def __init__(
+        self, folder: Path, devices: str = DEVICES, more: str = "", link: str | None = None
+    ) -> None:
         self.folder = folder
         self.file = folder / "robot.yaml"
-        link = f"link: {{connect: [tcp/127.0.0.1:{free_port()}]}}\n"
-        self.file.write_text(f"name: lawn\n{link}devices:\n{devices}{more}")
+        link = link or f"{{connect: [tcp/127.0.0.1:{free_port()}]}}"
+        self.file.write_text(f"name: lawn\nlink: {link}\ndevices:\n{devices}{more}")
         self._stack = ExitStack()
 
     def supervisor(self, *arguments: str) -> "Computer":
@@ -85,10 +88,10 @@ def _data(arguments: tuple[str, ...]) -> tuple[str, ...]:
 
 @contextmanager
 def robot_of_computers(
-    folder: Path, devices: str = DEVICES, more: str = ""
+    folder: Path, devices: str = DEVICES, more: str = "", link: str | None = None
 ) -> Iterator[RobotOfComputers]:
     """Give a robot none of whose computers runs yet, and kill those that do at the end."""
-    robot = RobotOfComputers(folder, devices, more)
+    robot = RobotOfComputers(folder, devices, more, link)
     try:
         yield robot
     finally:
@@ -123,6 +126,16 @@ class Computer:
         answer = self._http.request(method, way, json=body)
         assert answer.status_code == status, answer.text
         return answer.json() if answer.content else None
+
+    def order(self, path: str, **body: object) -> Any:  # noqa: ANN401
+        """Ask for something, and do not wait for its end."""
+        answer = self._http.post(path, json=body)
+        assert answer.status_code == 202, answer.text
+        return answer.json()
+
+    def text(self, path: str) -> str:
+        """Return what is at a path that is no JSON."""
+        return self._http.get(path).text
 
     def actual(self) -> Shown:
         """Return the actual state and mode of every part."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, TypeAlias
 
+from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
 from domain.graph_terms import GraphFault
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds, to_seconds
@@ -20,7 +21,10 @@ from service.clock import since_epoch
 from service.pacing import Alarm
 from service.ros.graph.drive import Deadman, drive_message
 from service.ros.graph.graph import (
+    OWNER,
+    ActionHandler,
     Fields,
+    GoalT,
     GraphFailedError,
     Lane,
     Message,
@@ -109,6 +113,8 @@ class FakeGraph:
         self.faults: list[GraphFault] = []
         """What is wrong in the graph."""
         self.closed = False
+        self.actions: dict[str, ActionHandler[Any]] = {}
+        """Who drives the goals of each action of ours."""
         self._published: defaultdict[str, list[Fields]] = defaultdict(list)
         self._latched: dict[str, Fields] = {}
         self._listeners: defaultdict[str, list[Callable[[Message], None]]] = defaultdict(list)
@@ -135,7 +141,9 @@ class FakeGraph:
         if "no_such_field" in path:
             raise UnknownFieldError(type_name, "no_such_field", ["data"])
 
-    def drive_output(self, topic: str, type_name: str, wheelbase_m: float) -> "FakeDriveOutput":
+    def drive_output(
+        self, topic: str, type_name: str, wheelbase_m: float, owner: str = OWNER
+    ) -> "FakeDriveOutput":
         """Return an output that publishes in this graph."""
         self._note(topic, type_name, Qos.COMMANDS)
         output = FakeDriveOutput(self, topic, type_name, wheelbase_m)
@@ -217,6 +225,22 @@ class FakeGraph:
         except Exception:
             _log.exception("%s failed; the request gets an empty response", service)
             return {}
+
+    def send_goal(self, action: str, goal: Fields) -> "FakeGoal":
+        """Let a client send a goal.
+
+        Raises:
+            KeyError: There is no such action.
+        """
+        handler = self.actions[action]
+        sent = FakeGoal(handler)
+        try:
+            read = handler.read(as_message(goal))
+        except InvalidValueError as error:
+            sent.rejected = str(error)
+        else:
+            handler.begin(read, sent)
+        return sent
 
     def fail(self) -> None:
         """Let the link to ROS 2 break."""
@@ -351,6 +375,36 @@ class FakeRosNode:
         self._graph._note(service, type_name)  # noqa: SLF001
         self._graph.offer(service, answer)
 
+    def serve_action(self, action: str, type_name: str, handler: ActionHandler[GoalT]) -> None:
+        """Offer an action; see `FakeGraph.send_goal`."""
+        self._graph._note(action, type_name)  # noqa: SLF001
+        self._graph.actions[action] = handler
+
+
+class FakeGoal:
+    """A goal that a client sent in a `FakeGraph`; an `AcceptedGoal`."""
+
+    def __init__(self, handler: ActionHandler[Any]) -> None:
+        self._handler = handler
+        self.rejected = ""
+        """Why it was not accepted; empty: it was."""
+        self.feedback: list[Fields] = []
+        self.ended: tuple[GoalOutcome, Fields] | None = None
+        """How it ended, and its result; None: it has not ended."""
+
+    def cancel(self) -> None:
+        """Let the client cancel it."""
+        self._handler.cancel(self)
+
+    def feed_back(self, feedback: Fields) -> None:
+        """Note feedback."""
+        self.feedback.append(feedback)
+
+    def end(self, end: GoalOutcome, result: Fields) -> None:
+        """Note the end; there is only one."""
+        assert self.ended is None, f"it has ended before: {self.ended}"
+        self.ended = (end, result)
+
 
 class FakeClient:
     """A client in a `FakeGraph`; a `Client`."""
@@ -375,6 +429,14 @@ class FakeClient:
             InvalidValueError: A number is beyond what ROS carries.
         """
         return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
+
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Ask, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time.
+        """
+        return await self.call(make(), within_s)
 
 
 class FakeDriveOutput:

@@ -11,6 +11,7 @@ from domain.simulation.node_settings import Fault
 from domain.state_and_mode import PartName
 from service.ros.interface.endpoints import Fields
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from tests.support.live_robot import make_live_robot, running
 from tests.support.manual_clock import ManualClock, settle
 
@@ -20,10 +21,12 @@ OPERATOR = Actor("test:operator")
 class RosRobot:
     """The example robot, its ROS interface, and what was heard of it."""
 
-    def __init__(self, model: SmhModel | None = None) -> None:
+    def __init__(
+        self, model: SmhModel | None = None, settings: InterfaceSettings = USUAL_SETTINGS
+    ) -> None:
         self.clock = ManualClock()
         self.supervisor, self.backend = make_live_robot(self.clock, model)
-        self.interface = RosInterface(self.supervisor)
+        self.interface = RosInterface(self.supervisor, settings)
 
     def hear(self, topic: str) -> list[Any]:
         """Listen to a topic; what is returned grows with each message."""
@@ -52,9 +55,11 @@ class RosRobot:
 
 
 @asynccontextmanager
-async def running_ros_robot(model: SmhModel | None = None) -> AsyncIterator[RosRobot]:
+async def running_ros_robot(
+    model: SmhModel | None = None, settings: InterfaceSettings = USUAL_SETTINGS
+) -> AsyncIterator[RosRobot]:
     """Let a robot and its interface run as long as the context lasts."""
-    robot = RosRobot(model)
+    robot = RosRobot(model, settings)
     async with running(robot.supervisor), running_interface(robot.interface):
         yield robot
 

@@ -18,7 +18,7 @@ from tests.support.manual_clock import ManualClock
 from tests.support.websocket import WebSocketClient
 
 SYSTEM_STATE = OfferedTopic(
-    "/system_state", "gem_state_msgs/msg/SystemStateStamped", "pilothouse", False, latched=False
+    "/system_state", "pilothouse_msgs/msg/SystemState", "pilothouse", False, latched=False
 )
 MODE_EVENT = OfferedTopic(
     "/actuation/mode_event", "system_modes_msgs/msg/ModeEvent", "actuation", False, latched=False
@@ -39,7 +39,7 @@ class SmallInterface:
         self.topics: Mapping[str, OfferedTopic] = {
             topic.name: topic for topic in (SYSTEM_STATE, MODE_EVENT, MODE_REQUEST)
         }
-        estop = SubscribedTopic("/estop", "gem_state_msgs/msg/EstopStamped", self._take)
+        estop = SubscribedTopic("/estop", "pilothouse_msgs/msg/EmergencyStop", self._take)
         self.heard: Mapping[str, SubscribedTopic] = {estop.name: estop}
         self.services: Mapping[str, OfferedService] = {
             service.name: service

@@ -161,6 +161,13 @@ CASES = (
         members=members(holds=(told.hold("drive_process", "the drive process has ended"),)),
     ),
     Case(
+        "a controller that does not give a goal up",
+        "IDLE",
+        "attention",
+        "no task; a new one would be held by navigation (the controller is gone)",
+        members=members(holds=(told.hold("navigation", "the controller is gone"),)),
+    ),
+    Case(
         "a hold without a task",
         "IDLE",
         "calm",

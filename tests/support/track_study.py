@@ -160,7 +160,7 @@ def _row(
         driven_m,
         feedback.distance_m,
         feedback.target_index,
-        feedback.command.steering_angle_rad,
+        0.0 if feedback.command is None else feedback.command.steering_angle_rad,
     )
 
 

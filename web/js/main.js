@@ -79,6 +79,7 @@ function draw() {
   drawnLevel = urgency(state);
   const view = currentView();
   document.body.dataset.contact = view.contact.level;
+  document.body.dataset.vehicle = view.state.ownDevice ? "elsewhere" : "here";
   const { total } = partCounts(view.state.parts, view.state.devices);
   document.body.dataset.size = total <= FEW ? "small" : total >= MANY ? "large" : "normal";
   // What is loaded later is not yet an element with an `update`.

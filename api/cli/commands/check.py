@@ -17,7 +17,7 @@ Check a model file: report all errors and warnings, with line and column.
 
 With --robot, check the robot file too, and the conditions of the model
 against its signals: an unknown signal is an error then, and a warning
-without.
+without. What a device of the robot leaves to its supervisor is listed.
 
 exit code: 0 valid, possibly with warnings; 1 invalid;
            2 a file cannot be read
@@ -55,7 +55,7 @@ def check(name: str, form: Form, robot: str | None = None) -> int:
     from service.files.text_file import UnreadableFileError
 
     try:
-        files = read_robot_files(name, robot).files
+        read = read_robot_files(name, robot)
     except UnreadableFileError as error:
         complain(str(error))
         return UNREADABLE
@@ -63,13 +63,13 @@ def check(name: str, form: Form, robot: str | None = None) -> int:
         # Lines of the file may hold what the encoding of the terminal cannot show.
         sys.stdout.reconfigure(errors="replace")
     if form == "json":
-        print(as_json(files))
+        print(as_json(read.files, read.left_out))
     elif form == "sarif":
-        print(as_sarif(files))
+        print(as_sarif(read.files))
     else:
-        for line in as_text(files):
+        for line in as_text(read.files, read.left_out):
             print(line)
-    return VALID if all(file.is_valid for file in files) else INVALID
+    return VALID if all(file.is_valid for file in read.files) else INVALID
 
 
 COMMAND = Command("check", "check a model file", _TEXT, _add_options, _run)

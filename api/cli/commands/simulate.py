@@ -50,7 +50,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     from api.cli.scenario_run import simulate
-    from api.serving.composition import EXAMPLE
+    from service.files.model_file import EXAMPLE
 
     return simulate(options.scenario, options.format, EXAMPLE, options.model, options.robot)
 

@@ -10,19 +10,11 @@ from rich.text import Text
 from api.cli.error_lines import SEVERITIES, is_on, is_silenced
 from api.cli.monitor import words
 from api.cli.monitor.device_words import amiss, heard_last, is_away, own_words, state_words
-from api.cli.monitor.rows import (
-    CALM,
-    CHANGES,
-    UNREACHABLE,
-    WRONG,
-    Chosen,
-    PartRow,
-    RowType,
-    SignalRow,
-    choose,
-)
+from api.cli.monitor.lines import counted, wrapped
+from api.cli.monitor.rows import MARK_STYLES, UNREACHABLE, WRONG, SignalRow, choose
 from api.cli.monitor.sentence import (
     Sentence,
+    absence_sentence,
     contact_sentence,
     restart_sentence,
     state_sentence,
@@ -34,9 +26,6 @@ from api.cli.monitor.view import Level, View, seconds_of
 
 Json: TypeAlias = Mapping[str, Any]
 
-LEGEND = "(*) inferred   ! deviation or error   > changing or pending   x unreachable"
-
-_MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", CALM: ""}
 _LEVEL_STYLES = {
     "calm": "bold",
     "held": "bold yellow",
@@ -51,13 +40,6 @@ _NAMED = 20
 _LEAST_LINES = 2
 """Of a table: the titles, and how many rows there would be."""
 
-_PART_COLUMNS = (
-    Column("  part", least=10),
-    Column("target", least=8, usual=19, needs_width=50),
-    Column("state", least=8, usual=16),
-    Column("mode", least=6, usual=13),
-    Column("", least=4, needs_width=64),
-)
 _SIGNAL_COLUMNS = (
     Column("  signal", least=10, usual=20),
     Column("value", least=6, usual=14),
@@ -66,26 +48,27 @@ _SIGNAL_COLUMNS = (
 )
 
 
-def head(view: View, width: int) -> list[Text]:
-    """Return the first line: address, simulated pieces and time of the values."""
-    at = view.robot.at
-    of = "" if at is None else words.time_of_day(seconds_of(at))
-    if of and view.contact.level is not Level.LIVE:
-        of = f"old, from {of}"
-    state = view.robot.system_state
-    unreal = ", ".join(state["simulated"]) if state else ""
-    line = Text(printable(f"Pilothouse  {view.url}"), style="bold")
+def head(view: View) -> list[Text]:
+    """Return title and time of the values; model, address and simulated pieces."""
+    robot, at = view.robot, view.robot.at
+    title = " System Modes Monitor"
+    if at is not None:
+        title += f" - {words.date_and_time(seconds_of(at))}"
+        if view.contact.level is not Level.LIVE:
+            title += " (old)"
+    unreal = ", ".join(robot.system_state["simulated"]) if robot.system_state else ""
+    about = f" Model: {robot.model or words.UNKNOWN}  {view.url}"
+    line = Text(printable(about))
     if unreal:
-        line.append(printable(f"  simulated: {unreal}"), style="not bold")
-    room = max(0, width - len(of) - 2)
-    line.truncate(room, overflow="ellipsis", pad=True)
-    return [line.append(f"  {of}", style="not bold")] if of else [line]
+        line.append(printable(f"  simulated: {unreal}"))
+    return [Text(title, style="bold"), line]
 
 
 def sentences(view: View, console: Console) -> list[Text]:
     """Return the state of the robot with its reasons, and problems of connection and storage."""
     told = (
         contact_sentence(view),
+        absence_sentence(view),
         stop_sentence(view),
         state_sentence(view),
         storage_sentence(view),
@@ -95,91 +78,13 @@ def sentences(view: View, console: Console) -> list[Text]:
 
 
 def _sentence_lines(said: Sentence, console: Console) -> list[Text]:
-    lines = _wrapped(f"{said.word}  {said.text}".rstrip(), console, indent=2)
+    lines = wrapped(f"{said.word}  {said.text}".rstrip(), console, indent=2)
     is_driving = said.word == "RUNNING" and said.level == "calm"
     style = _DRIVING if is_driving else _LEVEL_STYLES[said.level]
     lines[0].stylize(style, 0, len(said.word))
     for text in said.more:
-        lines.extend(_wrapped(f"  {text}", console, indent=4))
+        lines.extend(wrapped(f"  {text}", console, indent=4))
     return lines
-
-
-def _wrapped(text: str, console: Console, indent: int) -> list[Text]:
-    """Return a text as lines of which all but the first are indented."""
-    plain = printable(text)
-    first = Text(plain).wrap(console, console.width)[0]
-    first.rstrip()
-    behind = plain[len(first) :].lstrip()
-    if not behind:
-        return [first]
-    more = Text(behind).wrap(console, max(1, console.width - indent))
-    return [first, *(Text(" " * indent).append(line.plain.rstrip()) for line in more)]
-
-
-def parts(view: View, every: Sequence[PartRow], width: int, room: int | None) -> list[Text]:
-    """Return the tree of systems and nodes.
-
-    Args:
-        view: What is drawn.
-        every: A row for each part.
-        width: In cells.
-        room: Most lines; None: as many as needed.
-    """
-    if room is not None and room < _LEAST_LINES:
-        return []
-    chosen = choose(every, _rows_in(room))
-    rows = [(_part_cells(view, row), _MARK_STYLES[row.mark]) for row in chosen.rows]
-    return [*table(_PART_COLUMNS, rows, width, _TITLES), *_counted(chosen, "parts")]
-
-
-def _part_cells(view: View, row: PartRow) -> tuple[str, ...]:
-    part = row.part
-    actual, target = part["actual"], part["effective_target"] or part["target"]
-    is_known = actual["state"] != "unknown"
-    return (
-        f"{row.mark} {'  ' * row.depth}{row.name}",
-        words.label(target),
-        words.starred(actual["state"], inferred=actual["inferred"]) if is_known else words.UNKNOWN,
-        words.starred(actual["mode"] or "", inferred=actual["mode_inferred"]),
-        _part_note(view, row),
-    )
-
-
-def _part_note(view: View, row: PartRow) -> str:
-    device = row.part.get("device")
-    said = (
-        _part_state(view, row),
-        words.setter_and_reason(row.part["effective_target"]),
-        f"on {device}" if device else "",
-    )
-    return ", ".join(filter(None, said))
-
-
-def _part_state(view: View, row: PartRow) -> str:
-    part, since = row.part, row.part["deviation_since_at"]
-    if row.mark == UNREACHABLE:
-        return _away_words(view, part)
-    for_time = "" if since is None else f" {words.duration(view.known_for_s(since))}"
-    if row.mark == CHANGES:
-        return f"changing{for_time}"
-    reason = part["actual"]["reason"]
-    if reason:
-        return str(reason)
-    if row.mark != WRONG:
-        return ""
-    # What a part itself deviates from is in its columns; which of its parts deviates is not.
-    elsewhere = part.get("deviation_reason")
-    is_own = not elsewhere or elsewhere.startswith(f"{row.name} is ")
-    return f"deviates{for_time}" if is_own else f"deviates{for_time}: {elsewhere}"
-
-
-def _away_words(view: View, part: Json) -> str:
-    """Return that a node is unreachable; with what was known last, where its device is away."""
-    heard = heard_last(view.robot.devices.get(part.get("device") or ""))
-    if heard is None:
-        return "unreachable"
-    known, age = part.get("last_known"), words.duration(view.known_for_s(heard))
-    return f"was {words.label(known)} {age} ago" if known else f"unreachable for {age}"
 
 
 def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None) -> list[Text]:
@@ -194,8 +99,8 @@ def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None
     if room is not None and room < _LEAST_LINES:
         return []
     chosen = choose(every, _rows_in(room))
-    rows = [(_signal_cells(view, row), _MARK_STYLES[row.mark]) for row in chosen.rows]
-    return [*table(_SIGNAL_COLUMNS, rows, width, _TITLES), *_counted(chosen, "signals")]
+    rows = [(_signal_cells(view, row), MARK_STYLES[row.mark]) for row in chosen.rows]
+    return [*table(_SIGNAL_COLUMNS, rows, width, _TITLES), *counted(chosen, "signals")]
 
 
 def _signal_cells(view: View, row: SignalRow) -> tuple[str, ...]:
@@ -222,20 +127,20 @@ def task(view: View, console: Console) -> list[Text]:
     if now is None:
         lines = [Text("no task")]
         if robot.task is not None:
-            lines += _wrapped(f"  {words.end_words(robot.task)}", console, indent=4)
+            lines += wrapped(f"  {words.end_words(robot.task)}", console, indent=4)
     else:
         way = f"{words.metres(now['distance_m'])} of {words.metres(now['length_m'])}"
         far = f"{words.percent(now['progress'])}, {way}, {words.waypoint_words(now)}"
-        lines = _wrapped(f"task {now['id']}  {now['status']}  {far}", console, indent=2)
-        lines += _wrapped(f"  {words.drive_words(now, robot.vehicle)}", console, indent=4)
+        lines = wrapped(f"task {now['id']}  {now['status']}  {far}", console, indent=2)
+        lines += wrapped(f"  {words.drive_words(now, robot.vehicle)}", console, indent=4)
         # Holds are listed below, with more detail.
         if now["reason"] and not robot.holds:
-            lines += _wrapped(f"  {now['reason']}", console, indent=4)
+            lines += wrapped(f"  {now['reason']}", console, indent=4)
     for hold in (robot.holds or {}).values():
         why = f": {hold['reason']}" if hold["reason"] else ""
         by = f", by {hold['by']}" if hold["by"] not in ("", hold["owner"]) else ""
         since = words.duration(view.known_for_s(hold["since_at"]))
-        lines += _wrapped(f"  held by {hold['owner']}{why}, for {since}{by}", console, indent=4)
+        lines += wrapped(f"  held by {hold['owner']}{why}, for {since}{by}", console, indent=4)
     return lines
 
 
@@ -272,7 +177,7 @@ def errors(view: View) -> list[Text]:
         _some(silenced, "not announced"),
     )
     told = ", ".join(filter(None, (_worst_first(roots), *more)))
-    style = _MARK_STYLES[WRONG] if loud else ""
+    style = MARK_STYLES[WRONG] if loud else ""
     return [Text(printable(told), style=style)] if told else []
 
 
@@ -286,7 +191,7 @@ def reactions(view: View) -> list[Text]:
         for state in ("exhausted", "acting", "overruled", "passive")
         if (names := by_state.get(state))
     ]
-    style = _MARK_STYLES[WRONG] if by_state.keys() & {"exhausted", "acting"} else ""
+    style = MARK_STYLES[WRONG] if by_state.keys() & {"exhausted", "acting"} else ""
     return [Text(printable(f"reactions: {'; '.join(told)}"), style=style)] if told else []
 
 
@@ -300,7 +205,7 @@ def devices(view: View) -> list[Text]:
     if not found:
         return lines
     told = ", ".join(_device_words(view, device) for device in found[:_NAMED])
-    style = _MARK_STYLES[UNREACHABLE if any(map(is_away, found)) else WRONG]
+    style = MARK_STYLES[UNREACHABLE if any(map(is_away, found)) else WRONG]
     return [*lines, Text(printable(f"devices: {told}"), style=style)]
 
 
@@ -322,10 +227,3 @@ def _worst_first(roots: Sequence[tuple[str, Json]]) -> str:
 
 def _some(count: int, what: str) -> str:
     return f"{count} {what}" if count else ""
-
-
-def _counted(chosen: Chosen[RowType], what: str) -> list[Text]:
-    if chosen.left_out == 0:
-        return []
-    marked = f", {chosen.marked} of them marked" if chosen.marked else ""
-    return [Text(f"  ... and {chosen.left_out} more {what}{marked}")]

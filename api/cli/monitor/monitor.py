@@ -4,8 +4,10 @@ import asyncio
 import io
 import signal
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from typing import Protocol, TypeAlias
 
 from rich.console import Console
 
@@ -23,8 +25,33 @@ REDRAW_S = 0.25
 _PATIENCE_S = 10.0
 
 
+class Feed(Protocol):
+    """Tells a watch how the robot is."""
+
+    @property
+    def watch(self) -> Watch:
+        """Return the watch that is told."""
+        ...
+
+    async def run(self) -> None:
+        """Tell until cancelled, also after an interruption."""
+        ...
+
+    async def run_once(self) -> None:
+        """Tell until the picture is whole.
+
+        Raises:
+            NoAnswerError: Nobody answers, or not in time.
+        """
+        ...
+
+
+MakeFeed: TypeAlias = Callable[[Callable[[], None]], Feed]
+"""Makes a feed whose watch calls a function at news."""
+
+
 def monitor(url: str, form: Form, *, once: bool) -> int:
-    """Show a robot until q or Ctrl-C, or once; return the exit code.
+    """Show the robot of a service until q or Ctrl-C, or once; return the exit code.
 
     Args:
         url: Where the service runs.
@@ -36,15 +63,36 @@ def monitor(url: str, form: Form, *, once: bool) -> int:
         ServiceProblemError: The service rejects us.
     """
     address = Address.with_token_of_environment(url)
+    show(partial(_ServiceFeed, address), form, once=once)
+    return Outcome.SUCCEEDED
+
+
+def show(make: MakeFeed, form: Form, *, once: bool) -> None:
+    """Show what a feed tells until q or Ctrl-C, or once.
+
+    Args:
+        make: Makes the feed.
+        form: `text` for people, `json` for programs.
+        once: Write one picture only.
+
+    Raises:
+        NoAnswerError: With `once`, nobody answers.
+    """
     console = _console()
     if once:
-        asyncio.run(_once(address, form, console))
-        return Outcome.SUCCEEDED
-    is_drawn = form == "text" and sys.stdout.isatty() and not console.is_dumb_terminal
+        asyncio.run(_once(make(_nothing), form, console))
+        return
     # Ctrl-C, and a terminal that goes away, are how this ends.
     with suppress(KeyboardInterrupt, asyncio.CancelledError):
-        asyncio.run(_draw(address, console) if is_drawn else _log(address, form, console))
-    return Outcome.SUCCEEDED
+        if form == "text" and is_drawn():
+            asyncio.run(_draw(make(_nothing), console))
+        else:
+            asyncio.run(_log(make, form, console))
+
+
+def is_drawn() -> bool:
+    """Tell whether the standard output is a terminal that can be drawn on."""
+    return sys.stdout.isatty() and not _console().is_dumb_terminal
 
 
 def _console() -> Console:
@@ -55,39 +103,61 @@ def _console() -> Console:
     return Console(force_terminal=sys.stdout.isatty(), highlight=False, markup=False, emoji=False)
 
 
-async def _once(address: Address, form: Form, console: Console) -> None:
-    whole = asyncio.Event()
-    watch = Watch(address.url, lambda: whole.set() if watch.robot.is_whole else None)
+class _ServiceFeed:
+    """Tells what a service tells."""
 
-    async def wait() -> None:
-        await whole.wait()
+    def __init__(self, address: Address, news: Callable[[], None]) -> None:
+        self.watch = Watch(address.url, news=self._note_news)
+        self._news = news
+        self._whole = asyncio.Event()
+        self._link = Link(address, self.watch)
+        self._url = address.url
 
-    try:
-        async with asyncio.timeout(_PATIENCE_S):
-            await until_first_ends(Link(address, watch).serve(), wait())
-    except TimeoutError as error:
-        message = f"no complete state from {address.url} within {_PATIENCE_S:g} s"
-        raise NoAnswerError(message) from error
-    write_picture(watch.view(), form, console)
+    async def run(self) -> None:
+        await self._link.run()
+
+    async def run_once(self) -> None:
+        async def wait() -> None:
+            await self._whole.wait()
+
+        try:
+            async with asyncio.timeout(_PATIENCE_S):
+                await until_first_ends(self._link.serve(), wait())
+        except TimeoutError as error:
+            message = f"no complete state from {self._url} within {_PATIENCE_S:g} s"
+            raise NoAnswerError(message) from error
+
+    def _note_news(self) -> None:
+        if self.watch.robot.is_whole:
+            self._whole.set()
+        self._news()
 
 
-async def _log(address: Address, form: Form, console: Console) -> None:
+def _nothing() -> None:
+    """Do nothing."""
+
+
+async def _once(feed: Feed, form: Form, console: Console) -> None:
+    await feed.run_once()
+    write_picture(feed.watch.view(), form, console)
+
+
+async def _log(make: MakeFeed, form: Form, console: Console) -> None:
     _end_with_signals()
     log = ChangeLog(form, console)
-    watch = Watch(address.url, lambda: log.look(watch.view()))
-    await Link(address, watch).run()
+    feed = make(lambda: log.look(feed.watch.view()))
+    await feed.run()
 
 
-async def _draw(address: Address, console: Console) -> None:
+async def _draw(feed: Feed, console: Console) -> None:
     _end_with_signals()
-    watch = Watch(address.url)
     with alternate_screen(console) as screen:
         if hasattr(signal, "SIGCONT"):
             handler = partial(_come_back, screen)
             asyncio.get_running_loop().add_signal_handler(signal.SIGCONT, handler)
         await until_first_ends(
-            Link(address, watch).run(),
-            _redraw(screen, watch, console),
+            feed.run(),
+            _redraw(screen, feed.watch, console),
             Keyboard().until_quit(),
         )
 

@@ -4,12 +4,16 @@ from rich.console import Console
 from rich.text import Text
 
 from api.cli.monitor import blocks
+from api.cli.monitor.lines import cut
+from api.cli.monitor.part_block import PartBlock
 from api.cli.monitor.rows import SignalRow, part_rows
 from api.cli.monitor.view import Level, View
 
 _LEAST = 3
 """Lines of a block that is cut."""
 _NOTES = 5
+_LOW = 10
+"""Lines of a terminal below which the title alone is the head."""
 
 
 def picture(view: View, console: Console, height: int | None = None) -> list[Text]:
@@ -20,10 +24,11 @@ def picture(view: View, console: Console, height: int | None = None) -> list[Tex
         console: Whose width is used; nothing is written to it.
         height: Most lines; None: as many as are needed, without recent events.
     """
-    top = [*blocks.head(view, console.width), *blocks.sentences(view, console)]
+    is_low = height is not None and height < _LOW
+    top = [*blocks.head(view)[: 1 if is_low else None], *blocks.sentences(view, console)]
     if height is not None:
-        top = _cut(top, max(_LEAST, height // 2))
-    lines = top if view.robot.system_state is None else _joined(view, console, top, height)
+        top = cut(top, max(_LEAST, height // 2))
+    lines = top if view.robot.parts is None else _joined(view, console, top, height)
     if view.contact.level is Level.LOST:
         for line in lines[len(top) :]:
             line.stylize("dim")
@@ -34,37 +39,26 @@ def picture(view: View, console: Console, height: int | None = None) -> list[Tex
 
 def _joined(view: View, console: Console, top: list[Text], height: int | None) -> list[Text]:
     """Distribute the lines: state and task come first, blank lines last."""
-    task = blocks.task(view, console)
-    parts = part_rows(view.robot.parts or {})
-    signals = [SignalRow(signal) for signal in (view.robot.signals or {}).values()]
-    legend = [
-        *blocks.devices(view),
-        *blocks.errors(view),
-        *blocks.reactions(view),
-        Text(blocks.LEGEND),
-    ]
+    robot, width = view.robot, console.width
+    task = [] if robot.of_graph else blocks.task(view, console)
+    parts = PartBlock(view, part_rows(robot.parts or {}), console)
+    signals = [SignalRow(signal) for signal in (robot.signals or {}).values()]
+    more = [*blocks.devices(view), *blocks.errors(view), *blocks.reactions(view)]
     if height is None:
-        return _spaced(
-            top,
-            blocks.parts(view, parts, console.width, None),
-            blocks.signals(view, signals, console.width, None),
-            task,
-            legend,
-        )
-    task = _cut(task, max(_LEAST, height // 4))
+        for_signals = None if signals else 0
+        tables = parts.lines(None), blocks.signals(view, signals, width, for_signals)
+        return _spaced(top, *tables, task, more)
+    task = cut(task, max(_LEAST, height // 4))
     left = max(0, height - len(top) - len(task))
-    for_parts, for_signals = _shares(1 + len(parts), 1 + len(signals), left)
-    tables = (
-        blocks.parts(view, parts, console.width, for_parts),
-        blocks.signals(view, signals, console.width, for_signals),
-    )
+    for_parts, for_signals = _shares(parts.height, 1 + len(signals) if signals else 0, left)
+    tables = parts.lines(for_parts), blocks.signals(view, signals, width, for_signals)
     spare = left - sum(map(len, tables))
     gaps = 1 + len(tables)
     if spare <= gaps:
-        return [*top, *tables[0], *tables[1], *task, *legend[:spare]]
+        return [*top, *tables[0], *tables[1], *task, *more[:spare]]
     # With another gap in front of each.
-    notes = blocks.notes(view, min(_NOTES, spare - gaps - 1 - len(legend) - 1))
-    return _spaced(top, *tables, task, notes, legend if spare > gaps + len(legend) else [])
+    notes = blocks.notes(view, min(_NOTES, spare - gaps - 1 - len(more) - 1))
+    return _spaced(top, *tables, task, notes, more if spare > gaps + len(more) else [])
 
 
 def _shares(parts: int, signals: int, left: int) -> tuple[int, int]:
@@ -73,12 +67,6 @@ def _shares(parts: int, signals: int, left: int) -> tuple[int, int]:
         return parts, signals
     for_signals = min(signals, max(left // 3, left - parts))
     return left - for_signals, for_signals
-
-
-def _cut(lines: list[Text], most: int) -> list[Text]:
-    if len(lines) <= most:
-        return lines
-    return [*lines[: most - 1], Text(f"  ... and {len(lines) - most + 1} more lines")]
 
 
 def _spaced(*pieces: list[Text]) -> list[Text]:

@@ -1,13 +1,15 @@
 """Parts and signals as rows, and the choice of rows if there is no room for all."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, Self, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 Json = Mapping[str, Any]
 
 UNREACHABLE, WRONG, CHANGES, CALM = "x", "!", ">", " "
 """Marks in front of a row, the most urgent first."""
+
+MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", CALM: ""}
 
 _URGENCY = (UNREACHABLE, WRONG, CHANGES, CALM)
 
@@ -25,21 +27,15 @@ class Row(Protocol):
         """Return what needs attention."""
         ...
 
-    def alone(self) -> Self:
-        """Return the row as it is shown without those around it."""
-        ...
-
 
 RowType = TypeVar("RowType", bound=Row)
 
 
 @dataclass(frozen=True, slots=True)
 class PartRow:
-    """A system or node in the tree."""
+    """A system or node."""
 
     part: Json
-    depth: int = 0
-    """0 for a part of no system."""
 
     @property
     def name(self) -> str:
@@ -47,18 +43,19 @@ class PartRow:
         return str(self.part["name"])
 
     @property
+    def is_system(self) -> bool:
+        """Tell whether it is a system, and not a node."""
+        return self.part.get("kind") == "system"
+
+    @property
     def mark(self) -> str:
         """Return the mark; only nodes are marked as unreachable, not their systems."""
         part = self.part
-        if not part.get("reachable", True) and part.get("kind") == "node":
+        if not part.get("reachable", True) and not self.is_system:
             return UNREACHABLE
         if part.get("change"):
             return CHANGES
         return CALM if part["converged"] else WRONG
-
-    def alone(self) -> "PartRow":
-        """Return it without an indent."""
-        return PartRow(self.part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,10 +76,6 @@ class SignalRow:
             return WRONG
         return CHANGES if self.signal["pending"] else CALM
 
-    def alone(self) -> "SignalRow":
-        """Return itself."""
-        return self
-
 
 @dataclass(frozen=True, slots=True)
 class Chosen(Generic[RowType]):
@@ -95,24 +88,13 @@ class Chosen(Generic[RowType]):
 
 
 def part_rows(parts: Mapping[str, Json]) -> list[PartRow]:
-    """Return a row for each part, below its system; a part of two systems has two.
+    """Return a row for each part, systems first, else by name: as in the mode monitor of D4.8.
 
     Args:
         parts: By name.
     """
-    owned = {child for part in parts.values() for child in part.get("parts", ())}
-    rows: list[PartRow] = []
-    for name in parts:
-        if name not in owned:
-            rows.extend(_below(parts, name, 0))
-    return rows
-
-
-def _below(parts: Mapping[str, Json], name: str, depth: int) -> Iterator[PartRow]:
-    yield PartRow(parts[name], depth)
-    for child in parts[name].get("parts", ()):
-        if child in parts:
-            yield from _below(parts, child, depth + 1)
+    rows = map(PartRow, parts.values())
+    return sorted(rows, key=lambda row: (not row.is_system, row.name.encode()))
 
 
 def choose(rows: Sequence[RowType], room: int | None) -> Chosen[RowType]:
@@ -124,9 +106,9 @@ def choose(rows: Sequence[RowType], room: int | None) -> Chosen[RowType]:
     """
     if room is None or len(rows) <= room:
         return Chosen(tuple(rows))
-    urgent = {row.name: row.alone() for row in rows if row.mark != CALM}
+    urgent = [row for row in rows if row.mark != CALM]
     # Sorting is stable: what is equally urgent keeps its order.
-    first = sorted(urgent.values(), key=lambda row: _URGENCY.index(row.mark))
+    first = sorted(urgent, key=lambda row: _URGENCY.index(row.mark))
     ordered = [*first, *(row for row in rows if row.mark == CALM)]
     kept = ordered[: max(0, room - 1)]
     return Chosen(tuple(kept), len(ordered) - len(kept), max(0, len(first) - len(kept)))

@@ -39,7 +39,7 @@ class Sentence:
 def contact_sentence(view: View) -> Sentence | None:
     """Return the state of the connection; None while it is good."""
     contact, at = view.contact, view.robot.at
-    if contact.level is Level.LIVE and view.robot.system_state is not None:
+    if contact.level is Level.LIVE:
         return None
     if contact.level is not Level.LOST:
         return Sentence("CONNECTING", contact.why or "waiting for the first values")
@@ -59,6 +59,26 @@ def state_sentence(view: View) -> Sentence | None:
     if view.contact.level is Level.LIVE:
         return said
     return Sentence(f"WAS {said.word}", said.text, said.more, said.level)
+
+
+def absence_sentence(view: View) -> Sentence | None:
+    """Return which nodes of a ROS 2 graph do not answer; None: all do, or a service tells."""
+    robot = view.robot
+    if not robot.of_graph:
+        return None
+    nodes = [part for part in (robot.parts or {}).values() if part["kind"] == "node"]
+    away = [part["name"] for part in nodes if not part["reachable"]]
+    if not away:
+        return None
+    named = ", ".join(away[:_NAMED])
+    others = f" and {len(away) - _NAMED} more" if len(away) > _NAMED else ""
+    text = f"{len(away)} of {len(nodes)} nodes: {named}{others}"
+    if not robot.is_settled:
+        return Sentence("LOOKING FOR", text)
+    if len(away) < len(nodes):
+        return Sentence("ABSENT", text, level="attention")
+    hint = "no node answers: is this the ROS_DOMAIN_ID of the robot, and the model that it runs?"
+    return Sentence("ABSENT", text, (hint,), "attention")
 
 
 def stop_sentence(view: View) -> Sentence | None:
@@ -229,8 +249,8 @@ def _holds(robot: Robot) -> Mapping[str, Json]:
 _LEVELS: Mapping[str, Literal["held", "aborted"]] = {"HELD": "held", "ABORTED": "aborted"}
 """Words with a level of their own: nothing is wrong, and yet a person has to do something."""
 _STANDS = {"RUNNING": "running", "PAUSING": "stopping", "PAUSED": "paused"}
-_UNABLE = ("vehicle", "drive_process")
-"""The holds of a vehicle that cannot be driven: without a pose, or without commands."""
+_UNABLE = ("vehicle", "drive_process", "navigation")
+"""The holds of a vehicle that cannot be driven: without a pose, commands or a controller."""
 _UNKNOWN_TASKS = {
     "RUNNING_TASK": ("RUNNING", "the task is running"),
     "PAUSED_TASK": ("PAUSED", "the task is paused"),

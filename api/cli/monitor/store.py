@@ -22,6 +22,12 @@ class Note:
 class Robot:
     """The known state of the robot; before the first frame, nothing is known."""
 
+    model: str = ""
+    """Name of the model file; empty: not known."""
+    of_graph: bool = False
+    """Whether this was observed in a ROS 2 graph, so that only parts are known."""
+    is_settled: bool = False
+    """Of a graph: whether all that can be known soon is known."""
     epoch: str | None = None
     boot: int = 1
     """Number of the run of the service; 1: it kept nothing of earlier ones."""
@@ -59,11 +65,15 @@ class Robot:
     @property
     def is_whole(self) -> bool:
         """Tell whether everything is known."""
+        if self.of_graph:
+            return self.is_settled
         known = (self.system_state, self.parts, self.signals, self.holds, self.emergency_stop)
         return None not in known
 
     def as_json(self) -> dict[str, Any]:
         """Return the known state; each member has the form of the HTTP API."""
+        if self.of_graph:
+            return {"at": self.at, "parts": self.parts}
         return {
             "at": self.at,
             "system_state": self.system_state,
@@ -93,10 +103,13 @@ def fold(robot: Robot, frame: Json) -> Robot:
 
 def _hello(robot: Robot, frame: Json) -> Robot:
     """Continue, or start again: after a restart of the service the earlier state is void."""
+    # A service of an earlier version does not name it.
+    model = frame.get("model", "")
     if robot.epoch in (None, frame["epoch"]):
         # Errors that ended without contact are not told: the next frame has all that are on.
-        return replace(robot, epoch=frame["epoch"], boot=frame["boot"], errors={})
-    begun = Robot(epoch=frame["epoch"], boot=frame["boot"], restarted_at=frame["started_at"])
+        known = replace(robot, epoch=frame["epoch"], boot=frame["boot"], errors={})
+        return replace(known, model=model)
+    begun = Robot(model, epoch=frame["epoch"], boot=frame["boot"], restarted_at=frame["started_at"])
     if begun.boot > 1:
         # Events go on, and one of them tells what was restored.
         return replace(begun, last_event_id=robot.last_event_id, notes=robot.notes)
@@ -119,6 +132,18 @@ def _state(robot: Robot, frame: Json) -> Robot:
         devices={**robot.devices, **frame.get("devices", {})},
         this_device=frame.get("this_device", robot.this_device),
         emergency_stop=frame.get("emergency_stop", robot.emergency_stop),
+    )
+
+
+def _graph(robot: Robot, frame: Json) -> Robot:
+    """Take parts that were observed in a ROS 2 graph; the frame is made on this machine."""
+    return replace(
+        robot,
+        model=frame["model"],
+        of_graph=True,
+        is_settled=frame["settled"],
+        at=frame["at"],
+        parts=_merged(robot.parts, frame["parts"]),
     )
 
 
@@ -166,6 +191,7 @@ def _kept(notes: tuple[Note, ...]) -> tuple[Note, ...]:
 _FOLDERS: Mapping[str, Callable[[Robot, Json], Robot]] = {
     "hello": _hello,
     "state": _state,
+    "graph": _graph,
     "event": _event,
     "gap": _gap,
 }

@@ -11,6 +11,8 @@ LOST_S = 3.0
 """Frames come many times a second; after this silence, s, the connection counts as lost."""
 
 _CLOCK_WINDOW_S = 10.0
+_OF_NOW = ("state", "graph")
+"""Frames that tell how the robot is now."""
 
 _BEGAN_S = time.time() - time.monotonic()
 
@@ -49,7 +51,7 @@ class Watch:
     def take(self, frame: Json) -> None:
         """Take a frame of the stream."""
         self.robot = fold(self.robot, frame)
-        if frame["type"] == "state":
+        if frame["type"] in _OF_NOW:
             now_s = self._now()
             self._clock.observe(seconds_of(frame["at"]), now_s)
             self._heard_s, self._was_heard = now_s, True

@@ -39,6 +39,15 @@ def time_of_day(seconds: float) -> str:
     return datetime.fromtimestamp(seconds).astimezone().strftime("%H:%M:%S")
 
 
+def date_and_time(seconds: float) -> str:
+    """Return the local date and time, as in "Mon May  4 12:00:00 2026".
+
+    Args:
+        seconds: Since 1970.
+    """
+    return datetime.fromtimestamp(seconds).astimezone().ctime()
+
+
 def label(pair: Json | None) -> str:
     """Return "active.FAST", as in ROS 2; nothing for none."""
     if pair is None:

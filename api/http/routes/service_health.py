@@ -1,6 +1,6 @@
 """Health of the service, not of the robot: a healthy service may supervise a robot in ERROR."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from http import HTTPStatus
 from typing import Annotated, Literal
 
@@ -14,7 +14,8 @@ from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
 from domain.errors import StorageDegradedError
 from domain.graph_terms import GraphFaultKind
-from domain.tasks.holds import DRIVE_HOLD, VEHICLE_HOLD
+from domain.snapshot import HoldView
+from domain.tasks.holds import DRIVE_HOLD, NAVIGATION_HOLD, VEHICLE_HOLD
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
 
@@ -125,6 +126,18 @@ def _checks(supervisor: Supervisor) -> list[CheckJson]:
     return [CheckJson(name="model", ok=True, message=loaded), ticking]
 
 
+def _vehicle_warnings(holds: Mapping[str, HoldView]) -> Iterator[WarningJson]:
+    lost = holds.get(VEHICLE_HOLD)
+    if lost is not None:
+        yield WarningJson(code="NO_POSE", message=lost.reason)
+    undriven = holds.get(DRIVE_HOLD)
+    if undriven is not None:
+        yield WarningJson(code="NO_DRIVE", message=undriven.reason)
+    uncontrolled = holds.get(NAVIGATION_HOLD)
+    if uncontrolled is not None:
+        yield WarningJson(code="NO_CONTROLLER", message=uncontrolled.reason)
+
+
 def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]:
     for finding in supervisor.warnings:
         yield WarningJson(code=finding.code, message=finding.message)
@@ -135,12 +148,7 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
         if signal.source_fault is not None:
             message = f"no reading of {name}: {signal.source_fault}"
             yield WarningJson(code="SOURCE_FAILS", message=message)
-    lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
-    if lost is not None:
-        yield WarningJson(code="NO_POSE", message=lost.reason)
-    undriven = supervisor.core.driving.holds.get(DRIVE_HOLD)
-    if undriven is not None:
-        yield WarningJson(code="NO_DRIVE", message=undriven.reason)
+    yield from _vehicle_warnings(supervisor.core.driving.holds)
     for fault in supervisor.core.graph_faults():
         yield WarningJson(code=_GRAPH_CODES[fault.kind], message=f"{fault.name}: {fault.reason}")
     if late := supervisor.publisher.late_ticks:

@@ -14,8 +14,6 @@ from api.http.request_body import limits_of, read_body
 from api.http.route_policy import Permission, policy
 from api.http.schemas.path_preview import PathPreviewJson
 from api.http.schemas.tasks import (
-    DEFAULT_CONTROLLER,
-    DEFAULT_SPEED_MPS,
     Controller,
     TaskJson,
     TasksJson,
@@ -34,6 +32,7 @@ from domain.inputs import CancelTaskRequest, TaskRequest
 from domain.paths.headings import Heading
 from domain.tracking.trackers import TRACKERS
 from service.files.csv_columns import column_names
+from service.files.driving_block import DEFAULT_CONTROLLER, DEFAULT_SPEED_MPS
 from service.worker import Jobs
 
 router = APIRouter(prefix="/tasks", tags=["drive"])

@@ -17,6 +17,7 @@ from api.http.schemas.base import MAX_MODEL_BYTES, BlockerJson, Body, Json
 from api.http.schemas.health import MAX_SOURCE
 from api.http.schemas.problem import Problem
 from api.http.schemas.sent_values import SentParameter, SentSignalValue
+from api.http.schemas.simulated import FaultName, VehicleFaultName
 from api.http.schemas.tasks import TaskBody
 from domain.conditions.condition import Condition
 from domain.conditions.lexer import MAX_LENGTH, ConditionSyntaxError
@@ -31,11 +32,8 @@ MAX_READINGS = 5_000_000
 
 Time = Annotated[float, Field(ge=0, le=MAX_UNTIL_S, allow_inf_nan=False)]
 
-RECOVER = "recover"
 MAX_DEPTH = 32
 """Largest nesting of values that are compared or forwarded unchanged."""
-
-FaultName: TypeAlias = Literal["slow", "refuse", "fail", "error", "silent", "die", "recover"]
 
 
 def _checked_depth(value: Any) -> Any:  # noqa: ANN401
@@ -135,16 +133,11 @@ class NodeStep(ActingStep):
             raise ValueError("a node step must have either a fault or parameters")
         return self
 
-    @property
-    def set_fault(self) -> str | None:
-        """Return the fault to set; None: remove it."""
-        return None if self.fault == RECOVER else self.fault
-
 
 class VehicleStep(ActingStep):
-    """The simulated vehicle stops or resumes reporting its pose."""
+    """The simulated vehicle gets a fault: it reports no pose, or brakes weakly."""
 
-    vehicle: Literal["silent", "recover"]
+    vehicle: VehicleFaultName
 
 
 class AskedRequest(Body):
@@ -273,7 +266,12 @@ class SimulationBody(Body):
         default=None, description="Keys of a robot file; null: the defaults"
     )
     begin: Literal["live"] | None = Field(
-        default=None, alias="from", description="`live`: start with a copy of the live robot"
+        default=None,
+        alias="from",
+        description=(
+            "`live`: start with a copy of the live robot, which must be simulated, and have one"
+            " computer"
+        ),
     )
     until_s: Time
     sample_period_s: Annotated[float, Field(gt=0, le=MAX_UNTIL_S, allow_inf_nan=False)] = 1.0

@@ -46,6 +46,7 @@ class HelloJson(Json):
     started_at: Timestamp = Field(
         description="Start of this run of the service; the next frame is complete"
     )
+    model: str = Field(description="Name of the model file, without its folder; empty: not known")
     newest: int = Field(description="Id of the newest event: resume after it if none came since")
     topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")

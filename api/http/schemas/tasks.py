@@ -10,9 +10,8 @@ from domain.snapshot import HoldView, TaskPhase, TaskView, VehicleView
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits
 from service.clock import Clock
+from service.files.driving_block import DEFAULT_CONTROLLER, DEFAULT_SPEED_MPS
 
-DEFAULT_CONTROLLER = "pure_pursuit"
-DEFAULT_SPEED_MPS = 2.8
 MAX_HOLD_REASON = 500
 
 DIGITS = 6

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from domain.commands import Drive, NodeCommand
+from domain.commands import Drive, NodeCommand, PreemptGoal, SendGoal
 from domain.inputs import BackendStatus
 from domain.parts.system_model import SmhModel
 from service.clock import Clock
@@ -11,6 +11,7 @@ from service.ports import Deliver
 from service.ros.backend.delivery import Delivery
 from service.ros.backend.diagnostics import ReportedDiagnostics
 from service.ros.backend.graph_watch import GraphWatch
+from service.ros.backend.navigation_client import NavigationClient
 from service.ros.backend.nodes import RosNodes
 from service.ros.backend.signals import SignalTopics
 from service.ros.backend.topic_statistics import TopicStatistics
@@ -25,7 +26,7 @@ about a hundred messages of each topic itself.
 
 
 class Ros2Backend:
-    """One adapter for the nodes, the vehicle and the signals of a robot in ROS 2.
+    """One adapter for the nodes, the vehicle, the controller and the signals of a robot in ROS 2.
 
     Only `run` delivers messages: readings of `estop` first, reports of nodes last.
     """
@@ -53,6 +54,10 @@ class Ros2Backend:
         self._watch = GraphWatch(graph, clock)
         limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
+        navigation = robot.ros2.navigation
+        self._navigation: NavigationClient | None = None
+        if navigation is not None:
+            self._navigation = NavigationClient(navigation, graph, clock)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
         self._delivery = Delivery(room, clock)
 
@@ -70,20 +75,27 @@ class Ros2Backend:
             self._statistics.start()
             self._diagnostics.start(hear)
             self._vehicle.start(hear)
+            if self._navigation is not None:
+                self._navigation.start(hear)
             await self._nodes.start(hear)
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._graph.wait_failed(), name="link to ROS 2")
                 group.create_task(self._nodes.run(), name="nodes")
                 group.create_task(self._vehicle.run(), name="vehicle")
+                if self._navigation is not None:
+                    group.create_task(self._navigation.run(), name="navigation")
                 group.create_task(self._statistics.run(hear), name="statistics of topics")
                 group.create_task(self._watch.run(hear), name="faults of the graph")
                 await self._delivery.run(deliver)
         finally:
             await self._graph.close()
 
-    def send(self, command: NodeCommand | Drive, /) -> None:
-        """Send a command to a node or to the vehicle."""
+    def send(self, command: NodeCommand | Drive | SendGoal | PreemptGoal, /) -> None:
+        """Send a command to a node, to the vehicle or to the external controller."""
         if isinstance(command, Drive):
             self._vehicle.send(command)
+        elif isinstance(command, SendGoal | PreemptGoal):
+            if self._navigation is not None:
+                self._navigation.send(command)
         else:
             self._nodes.send(command)

@@ -4,6 +4,7 @@ import asyncio
 from collections import deque
 from enum import IntEnum
 
+from domain.controller import ControllerMessage
 from domain.health.signals import ESTOP_SIGNAL
 from domain.inputs import DriveStatus, Readings, ReportBacklog, VehicleReport
 from domain.timebase import Instant, seconds
@@ -21,7 +22,7 @@ class _Urgency(IntEnum):
 
     ESTOP = 0
     SENSORS = 1
-    """All other readings, and reports of the vehicle and of what drives it."""
+    """All other readings, and reports of the vehicle and of whoever drives it."""
     NODES = 2
 
 
@@ -90,5 +91,5 @@ def _urgency(message: BackendMessage) -> _Urgency:
     if isinstance(message, Readings):
         is_estop = any(reading.signal == ESTOP_SIGNAL for reading in message.items)
         return _Urgency.ESTOP if is_estop else _Urgency.SENSORS
-    is_driving = isinstance(message, VehicleReport | DriveStatus)
+    is_driving = isinstance(message, VehicleReport | DriveStatus | ControllerMessage)
     return _Urgency.SENSORS if is_driving else _Urgency.NODES

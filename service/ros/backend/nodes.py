@@ -20,7 +20,6 @@ from service.ros.backend.node_watch import LOOK_PERIOD, NodeMessage, NodeWatch, 
 from service.ros.graph.graph import Lane, Message, Qos, RosGraph, RosNode
 
 _OURS = "pilothouse_"
-"""Prefix of the names of our own nodes, which have the clients and subscriptions."""
 HEARTBEAT_LEASE_S = 0.5
 """Liveliness lease of the heartbeat topic of a node, s: its death is noticed after this time."""
 
@@ -35,7 +34,22 @@ class RosNodes:
     for longer than 2 s is unreachable meanwhile, since it looks like a dead one.
     """
 
-    def __init__(self, nodes: Mapping[PartName, NodeModel], graph: RosGraph, clock: Clock) -> None:
+    def __init__(
+        self,
+        nodes: Mapping[PartName, NodeModel],
+        graph: RosGraph,
+        clock: Clock,
+        ours: str = _OURS,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            nodes: The nodes of the model, by name.
+            graph: The ROS 2 graph.
+            clock: For the polling cycle.
+            ours: Prefix of the names of our own nodes, which have the clients and subscriptions.
+        """
+        self._ours = ours
         self._nodes = nodes
         self._graph = graph
         self._clock = clock
@@ -104,7 +118,7 @@ class RosNodes:
             watch.send(command)
 
     def _node(self, lane: Lane) -> RosNode:
-        return self._graph.node(f"{_OURS}{lane.value}", lane)
+        return self._graph.node(f"{self._ours}{lane.value}", lane)
 
     async def _look_forever(self) -> None:
         at = self._clock.now()

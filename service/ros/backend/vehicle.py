@@ -12,11 +12,10 @@ from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
 from service.clock import Clock
 from service.files.ros2_block import Ros2Block
-from service.ros.graph.graph import DriveOutput, Lane, Message, Qos, RosGraph
+from service.ros.graph.graph import OWNER, DriveOutput, Lane, Message, Qos, RosGraph
 
 log = logging.getLogger(__name__)
 
-NODE = "pilothouse_vehicle"
 ODOMETRY = "nav_msgs/msg/Odometry"
 
 _PERIOD: Duration = seconds(0.04)
@@ -37,8 +36,23 @@ class RosVehicle:
     """
 
     def __init__(
-        self, settings: Ros2Block, limits: VehicleLimits, graph: RosGraph, clock: Clock
+        self,
+        settings: Ros2Block,
+        limits: VehicleLimits,
+        graph: RosGraph,
+        clock: Clock,
+        owner: str = OWNER,
     ) -> None:
+        """Prepare; `start` subscribes.
+
+        Args:
+            settings: Topics of odometry and commands.
+            limits: Of the vehicle.
+            graph: The ROS 2 graph.
+            clock: Of the service.
+            owner: The names of its nodes begin with this.
+        """
+        self._owner = owner
         self._settings = settings
         self._limits = limits
         self._graph = graph
@@ -61,7 +75,7 @@ class RosVehicle:
         self._deliver = deliver
         if command is not None:
             self._output = self._graph.drive_output(
-                command.topic, command.type, self._limits.wheelbase_m
+                command.topic, command.type, self._limits.wheelbase_m, self._owner
             )
             self._tell_drive_status()
         if odometry is not None:
@@ -69,7 +83,7 @@ class RosVehicle:
             def take(motion: _Motion) -> None:
                 deliver(VehicleReport(self._state(motion)))
 
-            node = self._graph.node(NODE, Lane.SENSORS)
+            node = self._graph.node(f"{self._owner}_vehicle", Lane.SENSORS)
             node.subscribe(odometry.topic, ODOMETRY, Qos.SENSOR, self._odometry.pick, take)
 
     async def run(self) -> None:

@@ -18,6 +18,11 @@ from domain.errors import InvalidValueError
 from service.ros.graph.graph import Fields, Message, UnknownFieldError, UnknownTypeError
 
 _TYPE_NAME = re.compile(r"(?P<folder>[a-z]\w*/(?:msg|srv))/(?P<name>[A-Za-z]\w*)", re.ASCII)
+_ACTION_TYPE_NAME = re.compile(
+    r"(?P<folder>[a-z]\w*/action)/(?P<name>[A-Za-z][A-Za-z0-9]*)(?:_(?P<piece>[A-Za-z]+))?",
+    re.ASCII,
+)
+_ACTION_PIECE = re.compile(r"[a-z]\w*/[A-Za-z]\w*_(?:Goal|Result|Feedback)", re.ASCII)
 _SEQUENCE = re.compile(r"sequence<(?P<element>.+?)(?:, (?P<most>\d+))?>")
 _ARRAY = re.compile(r"(?P<element>.+)\[(?P<length>\d+)\]")
 _STRING = re.compile(r"w?string(?:<(?P<most>\d+)>)?")
@@ -31,19 +36,34 @@ def find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS, which h
     """Return the class of a type.
 
     Args:
-        type_name: As `std_msgs/msg/Bool` or `lifecycle_msgs/srv/GetState`.
+        type_name: As `std_msgs/msg/Bool`, `lifecycle_msgs/srv/GetState`,
+            `nav2_msgs/action/FollowPath`, or for what an action consists of
+            `nav2_msgs/action/FollowPath_SendGoal`, `_GetResult`, `_FeedbackMessage`, `_Goal`.
 
     Raises:
         UnknownTypeError: The type is not installed on this machine.
     """
-    match = _TYPE_NAME.fullmatch(type_name)
+    match = _TYPE_NAME.fullmatch(type_name) or _ACTION_TYPE_NAME.fullmatch(type_name)
     if match is None:
         raise UnknownTypeError(type_name)
     try:
         module = importlib.import_module(match["folder"].replace("/", "."))
-        return getattr(module, match["name"])
+        kind = getattr(module, match["name"])
+        piece = match.groupdict().get("piece")
+        return kind if piece is None else _piece_of(kind, piece)
     except (ImportError, AttributeError) as error:
         raise UnknownTypeError(type_name) from error
+
+
+def _piece_of(action: Any, name: str) -> Any:  # noqa: ANN401  # classes of ROS
+    """Return one of the types that an action consists of.
+
+    Raises:
+        AttributeError: There is no such piece.
+    """
+    if name in ("SendGoal", "GetResult"):
+        return getattr(action.Impl, f"{name}Service")
+    return getattr(action.Impl if name == "FeedbackMessage" else action, name)
 
 
 def require_field(type_name: str, path: Sequence[str | int]) -> None:
@@ -129,7 +149,8 @@ def _checked(kind: str) -> Check:
     if match := _ARRAY.fullmatch(kind):
         return partial(_array, _checked(match["element"]), int(match["length"]))
     if "/" in kind:
-        return partial(_nested, find_type(kind.replace("/", "/msg/")))
+        folder = "/action/" if _ACTION_PIECE.fullmatch(kind) else "/msg/"
+        return partial(_nested, find_type(kind.replace("/", folder)))
     if match := _STRING.fullmatch(kind):
         return partial(_text, None if match["most"] is None else int(match["most"]))
     if match := _INTEGER.fullmatch(kind):

@@ -216,20 +216,21 @@ class Server:
 
     def _keep(self, request: Message, header: object) -> None:
         if self._room.acquire(blocking=False):
-            self._crossing.post(self._begin, request, header)
+            # Read here, since the waypoints of a task take longer than a tick may be late.
+            self._crossing.post(self._begin, fields_of(request), header)
             return
         if not self._complained:
             _log.warning("%s: %d requests wait; more are rejected", self._name, MAX_UNANSWERED)
         self._complained = True
         self._respond(self._response(), header)
 
-    def _begin(self, request: Message, header: object) -> None:
+    def _begin(self, request: Fields, header: object) -> None:
         self._crossing.own(self._work(request, header), f"answer of {self._name}")
 
-    async def _work(self, request: Message, header: object) -> None:
+    async def _work(self, request: Fields, header: object) -> None:
         response = self._response()
         try:
-            fill(response, await self._answer(fields_of(request)))
+            fill(response, await self._answer(request))
         except Exception:
             # The edge to the handler: a fault in one response must not end the service.
             _log.exception("%s: a request gets an empty response because of:", self._name)

@@ -22,7 +22,6 @@ SPEAK_EVERY_S = 0.2
 
 _SENT_S = 0.2
 """The middleware sends the last message in a thread of its own."""
-_NODE = "pilothouse_drive"
 _ALIVE = b"alive"
 
 
@@ -112,6 +111,7 @@ class _Arguments(NamedTuple):
     topic: str
     type_name: str
     wheelbase_m: str
+    node: str
 
 
 async def _work(channel: socket.socket, arguments: _Arguments) -> None:
@@ -119,9 +119,9 @@ async def _work(channel: socket.socket, arguments: _Arguments) -> None:
     from service.ros.graph.graph import Lane, Qos
     from service.ros.graph.link import RosLink
 
-    topic, type_name, wheelbase_m = arguments
+    topic, type_name, wheelbase_m, node = arguments
     link = RosLink()
-    publisher = link.node(_NODE, Lane.SENSORS).publisher(topic, type_name, Qos.COMMANDS)
+    publisher = link.node(node, Lane.SENSORS).publisher(topic, type_name, Qos.COMMANDS)
 
     def publish(command: DriveCommand) -> None:
         publisher.publish(drive_message(command, type_name, float(wheelbase_m)))
@@ -132,7 +132,7 @@ async def _work(channel: socket.socket, arguments: _Arguments) -> None:
 
 
 def main() -> None:
-    """Run; the arguments are the number of the channel, the topic, its type and the wheelbase."""
+    """Run; the arguments are the number of the channel, and what `_Arguments` names."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT"):
         signal.signal(getattr(signal, name), signal.SIG_IGN)
     number, *rest = sys.argv[1:]

@@ -40,6 +40,7 @@ class DriveProcess:
         wheelbase_m: float,
         publish: Callable[[DriveCommand], None],
         clock: Clock | None = None,
+        node: str = "pilothouse_drive",
     ) -> None:
         """Prepare; `run` starts the process.
 
@@ -49,8 +50,9 @@ class DriveProcess:
             wheelbase_m: Of the vehicle, m.
             publish: Publishes a command from here, past the process; for a stop when it ended.
             clock: Monotonic and the same in all processes of this machine; None: that of Linux.
+            node: Name of the node in the process.
         """
-        self._arguments = (topic, type_name, repr(wheelbase_m))
+        self._arguments = (topic, type_name, repr(wheelbase_m), node)
         self._publish = publish
         self._clock = clock or MonotonicClock()
         self._channel: socket.socket | None = None

@@ -1,14 +1,12 @@
-"""Clients, publishers and subscriptions over those of rclpy, which are given; imports no ROS."""
+"""Publishers and subscriptions over those of rclpy, which are given; imports no ROS."""
 
-import asyncio
 from collections.abc import Callable
 from typing import Any
 
-from service.ros.graph.answers import answer_within
 from service.ros.graph.conversion import fill
 from service.ros.graph.crossing import Crossing
 from service.ros.graph.graph import Fields, Message
-from service.ros.graph.sending import Sender, Turnstile, send_or_tell
+from service.ros.graph.sending import Sender, send_or_tell
 
 DRAINED = 50
 """Most messages of a topic that are taken in one go; then other topics have their turn."""
@@ -46,64 +44,6 @@ class Drain:
             if taken is None:
                 return
             self._hear(taken[0])
-
-
-class LinkClient:
-    """A `Client` of rclpy."""
-
-    def __init__(
-        self,
-        crossing: Crossing,
-        turnstile: Turnstile,
-        node: Any,  # noqa: ANN401
-        kind: Any,  # noqa: ANN401
-        client: Any,  # noqa: ANN401
-    ) -> None:
-        """Prepare.
-
-        Args:
-            crossing: Passes responses on; nothing is sent once it is closed.
-            turnstile: Where requests wait for their turn.
-            node: Of rclpy, which has the client.
-            kind: Type of the service.
-            client: Of rclpy.
-        """
-        self._crossing = crossing
-        self._turnstile = turnstile
-        self._node = node
-        self._kind = kind
-        self._client = client
-
-    def is_ready(self) -> bool:
-        """Tell whether the graph knows a server."""
-        return not self._crossing.closed and bool(self._client.service_is_ready())
-
-    def servers(self) -> int:
-        """Return how many servers the graph knows."""
-        if self._crossing.closed:
-            return 0
-        return int(self._node.count_services(self._client.service_name))
-
-    async def call(self, request: Fields, within_s: float) -> Message:
-        """Send a request, and return the response.
-
-        Raises:
-            TimeoutError: There was none in time, or the link is closed.
-            InvalidValueError: The fields do not fit the request type of the service.
-        """
-        await self._turnstile.wait_for_turn()
-        message = self._kind.Request()
-        fill(message, request)
-        if self._crossing.closed:
-            raise TimeoutError("the link to ROS 2 is closed")
-        response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
-        asked = self._client.call_async(message)
-        # Awaiting the future of rclpy would busy-wait.
-        asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
-        try:
-            return await answer_within(response, within_s)
-        finally:
-            self._client.remove_pending_request(asked)
 
 
 class LinkPublisher:
@@ -148,8 +88,3 @@ class LinkPublisher:
         fill(filled, message)
         if not self._crossing.closed:
             self._publisher.publish(filled)
-
-
-def _settle(response: asyncio.Future[Message], message: Message) -> None:
-    if not response.done():
-        response.set_result(message)

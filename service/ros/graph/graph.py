@@ -8,10 +8,15 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
+from domain.controller import GoalOutcome
 from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
 
 PickedT = TypeVar("PickedT")
+GoalT = TypeVar("GoalT")
+
+OWNER = "pilothouse"
+"""The names of the nodes of a service begin with this."""
 
 Fields: TypeAlias = Mapping[str, Any]
 """A message as in JSON: names to numbers, strings, lists and further mappings. Fields that are left
@@ -71,7 +76,9 @@ class Lane(Enum):
     TRANSITIONS = "transitions"
     PARAMETERS = "parameters"
     LIVELINESS = "liveliness"
+    TARGETS = "targets"
     SENSORS = "sensors"
+    NAVIGATION = "navigation"
     GATEWAY = "gateway"
 
 
@@ -98,6 +105,20 @@ class Client(Protocol):
         """
         ...
 
+    async def call_large(self, make: Callable[[], Fields], within_s: float) -> Message:
+        """Send a request of thousands of fields, and return the response.
+
+        To fill and to send it takes a tenth of a second, which is spent on another thread.
+
+        Args:
+            make: Returns its fields; called on another thread.
+            within_s: Timeout once it was sent, s.
+
+        Raises:
+            TimeoutError: There was no response in time; the fate of the request is unknown.
+        """
+        ...
+
 
 class Publisher(Protocol):
     """A publisher of a topic."""
@@ -111,6 +132,41 @@ class Publisher(Protocol):
 
     def has_subscribers(self) -> bool:
         """Tell whether the graph knows a subscription that the messages reach."""
+        ...
+
+
+class AcceptedGoal(Protocol):
+    """A goal of a client of ours that has not ended."""
+
+    def feed_back(self, feedback: Fields) -> None:
+        """Publish feedback, and return at once."""
+        ...
+
+    def end(self, end: GoalOutcome, result: Fields) -> None:
+        """End the goal with a result, and return at once; call it once.
+
+        `CANCELED` is for a goal whose client asked for that.
+        """
+        ...
+
+
+class ActionHandler(Protocol[GoalT]):
+    """Drives the goals of an action; several may be there at once."""
+
+    def read(self, message: Message, /) -> GoalT:
+        """Return a goal of a client; called on another thread.
+
+        Raises:
+            InvalidValueError: The goal cannot be accepted: it is rejected, and that is logged.
+        """
+        ...
+
+    def begin(self, goal: GoalT, accepted: AcceptedGoal, /) -> None:
+        """Begin a goal that was accepted, and return at once."""
+        ...
+
+    def cancel(self, accepted: AcceptedGoal, /) -> None:
+        """Cancel a goal that may have ended meanwhile, and return at once."""
         ...
 
 
@@ -224,6 +280,16 @@ class RosNode(Protocol):
         """
         ...
 
+    def serve_action(self, action: str, type_name: str, handler: ActionHandler[GoalT]) -> None:
+        """Offer an action while the graph is open.
+
+        Args:
+            action: Full name.
+            type_name: As `nav2_msgs/action/FollowPath`.
+            handler: Drives its goals.
+        """
+        ...
+
 
 class RosGraph(Protocol):
     """The ROS 2 graph."""
@@ -254,13 +320,16 @@ class RosGraph(Protocol):
         """
         ...
 
-    def drive_output(self, topic: str, type_name: str, wheelbase_m: float) -> DriveOutput:
+    def drive_output(
+        self, topic: str, type_name: str, wheelbase_m: float, owner: str = OWNER
+    ) -> DriveOutput:
         """Return the output for drive commands.
 
         Args:
             topic: Full name.
             type_name: As `geometry_msgs/msg/Twist`.
             wheelbase_m: Of the vehicle, m.
+            owner: The names of its nodes begin with this.
 
         Raises:
             UnknownTypeError: The type is not installed.

@@ -8,7 +8,6 @@ while a client is joining or leaving; all other messages are published by a `Sen
 
 import asyncio
 import logging
-import os
 import sys
 import threading
 import time
@@ -16,6 +15,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from typing import Any
 
 import rclpy
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -32,19 +32,22 @@ from rclpy.qos import (
 )
 from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
-from rosidl_generator_py.import_type_support_impl import (
-    UnsupportedTypeSupport,
-)
+from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
 from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
+from service.ros.graph.action_goals import ActionGoals
 from service.ros.graph.conversion import find_type, require_field
 from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
+from service.ros.graph.domain_id import check_domain
 from service.ros.graph.drive import drive_message
 from service.ros.graph.drive_process import DriveProcess
-from service.ros.graph.ends import Drain, LinkClient, LinkPublisher
+from service.ros.graph.ends import Drain, LinkPublisher
 from service.ros.graph.graph import (
+    OWNER,
+    ActionHandler,
     Fields,
+    GoalT,
     GraphFailedError,
     Lane,
     Message,
@@ -54,6 +57,7 @@ from service.ros.graph.graph import (
 )
 from service.ros.graph.header import begins_with_header, stamp_in
 from service.ros.graph.sending import Sender, Turnstile
+from service.ros.graph.service_client import ServiceClient
 from service.ros.graph.survey import End, Survey
 
 _PROFILES = {
@@ -68,14 +72,13 @@ _SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
 # Each event handler slows down every wait of a lane.
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+_GOALS = {True: GoalResponse.ACCEPT, False: GoalResponse.REJECT}
+_CANCELS = {True: CancelResponse.ACCEPT, False: CancelResponse.REJECT}
 _LIVELINESS_DEPTH = 8
 _ARRIVALS_DEPTH = 5
 _LOOK_S = 1.0
 """Time between two looks at the publishers of a topic whose messages are counted."""
-_DOMAINS = range(233)
 _JOIN_S = 1.0
-_STOP_NODE = "pilothouse_stop"
-"""Commands speed 0 if the process that commands the vehicle ends."""
 _SWITCH_S = 0.0005
 """For how long a lane may keep the interpreter from the event loop; by default it is 5 ms, each."""
 _URGENT = frozenset({Lane.SENSORS, Lane.GATEWAY})
@@ -100,7 +103,7 @@ class RosLink:
         Raises:
             RuntimeError: The middleware does not start, or ROS_DOMAIN_ID is invalid.
         """
-        _check_domain()
+        check_domain()
         sys.setswitchinterval(_SWITCH_S)
         self.context = rclpy.Context()
         # No arguments, since those of the command line are not for ROS; no signal handlers, since
@@ -148,15 +151,18 @@ class RosLink:
         """Check that messages of a type have a field."""
         require_field(type_name, path)
 
-    def drive_output(self, topic: str, type_name: str, wheelbase_m: float) -> DriveProcess:
+    def drive_output(
+        self, topic: str, type_name: str, wheelbase_m: float, owner: str = OWNER
+    ) -> DriveProcess:
         """Return the output for drive commands: a process of its own."""
-        node = self.node(_STOP_NODE, Lane.SENSORS)
+        # Commands speed 0 if that process ends.
+        node = self.node(f"{owner}_stop", Lane.SENSORS)
         publisher = node.publisher(topic, type_name, Qos.COMMANDS)
 
         def publish(command: DriveCommand) -> None:
             publisher.publish(drive_message(command, type_name, wheelbase_m))
 
-        return DriveProcess(topic, type_name, wheelbase_m, publish)
+        return DriveProcess(topic, type_name, wheelbase_m, publish, node=f"{owner}_drive")
 
     async def look(self) -> Sequence[GraphFault]:
         """Look at some of our topics, and return what is known to be wrong in the graph now."""
@@ -265,11 +271,11 @@ class _Node:
         self._spinner = spinner
         self._node = node
 
-    def client(self, service: str, type_name: str) -> LinkClient:
+    def client(self, service: str, type_name: str) -> ServiceClient:
         """Return a client."""
         kind = _find_type(type_name)
-        client, link = self._node.create_client(kind, service), self._link
-        return LinkClient(link.crossing, link.turnstile, self._node, kind, client)
+        client = self._node.create_client(kind, service)
+        return ServiceClient(self._link.crossing, self._link.turnstile, self._node, kind, client)
 
     def publisher(self, topic: str, type_name: str, qos: Qos) -> LinkPublisher:
         """Return a publisher."""
@@ -351,6 +357,21 @@ class _Node:
         server = Server(self._link.crossing, service, kind.Response, answer, self._spinner.do)
         server.attach(self._node.create_service(kind, service, server.accept, qos_profile=_SERVING))
 
+    def serve_action(self, action: str, type_name: str, handler: ActionHandler[GoalT]) -> None:
+        """Offer an action while the link is open."""
+        kind, link = _find_type(type_name), self._link
+        goals = ActionGoals(link.crossing, link.sender, action, kind, handler, self._spinner.do)
+        server = ActionServer(
+            self._node,
+            kind,
+            action,
+            _nothing,
+            goal_callback=lambda goal: _GOALS[goals.judge(goal)],
+            handle_accepted_callback=goals.accept,
+            cancel_callback=lambda handle: _CANCELS[goals.cancel(handle)],
+        )
+        goals.attach(server)
+
 
 class _ArrivalWatch:
     """A subscription to serialized messages that is as reliable as all their publishers are.
@@ -391,20 +412,6 @@ class _ArrivalWatch:
             self._reliability = wanted
             self._node.destroy_subscription(self._subscription)
             self._subscription = self._subscribe()
-
-
-def _check_domain() -> None:
-    """Reject a domain that ROS would misread, or that would abort the process."""
-    text = os.environ.get("ROS_DOMAIN_ID", "")
-    try:
-        # By the rules of C, as in rcl.
-        domain = int(text or "0", base=0)
-    except ValueError:
-        domain = -1
-    if domain not in _DOMAINS:
-        raise RuntimeError(
-            f"ROS_DOMAIN_ID must be a whole number from 0 to {_DOMAINS[-1]}, not {text!r:.40}"
-        )
 
 
 def _find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS

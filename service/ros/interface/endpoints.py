@@ -1,7 +1,7 @@
 """Services and topics of the interface, and the listeners of the topics.
 
 Messages are mappings, as in JSON, with all fields of their type. Where ROS has no type, those of
-`system_modes_msgs` and `gem_state_msgs` are used.
+`system_modes_msgs` and a package of `message_sets` are used.
 """
 
 from collections.abc import Awaitable, Callable, Mapping
@@ -66,7 +66,7 @@ class SubscribedTopic:
     name: str
     """Full name, as `/battery_level`."""
     type: str
-    """As `gem_state_msgs/msg/BatteryLevelStamped`."""
+    """As `pilothouse_msgs/msg/BatteryLevel`."""
     take: Callable[[Fields, Actor], str | None]
     """Takes a message and its sender; returns what it ignored of a message that asks for a stop.
 

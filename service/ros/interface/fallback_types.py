@@ -1,8 +1,8 @@
 """Standard types in place of message types that are rarely installed.
 
-`system_modes_msgs` and `gem_state_msgs` are in no ROS 2 distribution. If one is not installed, its
-services and topics are offered with types that every installation has. A mode is then represented
-as a state with a label such as `active.FAST`.
+`system_modes_msgs` and the packages of `message_sets` are in no ROS 2 distribution. If one is not
+installed, its services and topics are offered with types that every installation has. A mode is
+then represented as a state with a label such as `active.FAST`.
 """
 
 from collections.abc import Callable, Mapping
@@ -15,6 +15,7 @@ from domain.snapshot import SystemState, TaskStatus
 from domain.state_and_mode import ModeName, StateAndMode
 from service.ros.interface.diagnostics import Level, status
 from service.ros.interface.endpoints import Fields
+from service.ros.interface.message_sets import MessageSet, type_in
 from service.ros.interface.services import UNKNOWN_MODE
 
 Convert: TypeAlias = Callable[[Fields], Fields]
@@ -108,6 +109,15 @@ def _stamp(fields: Mapping[str, Any]) -> str:
     return f"{stamp['sec']}.{stamp['nanosec']:09d}"
 
 
+def _named_file(fields: Fields) -> Fields:
+    """Read the only text that a request has."""
+    return {"file": fields["load_namespace"]}
+
+
+def _task_answer(fields: Fields) -> Fields:
+    return {"success": fields["success"], "message": fields["message"] or fields["task"]}
+
+
 SERVICE_FALLBACKS: Mapping[str, ServiceFallback] = {
     "system_modes_msgs/srv/ChangeMode": ServiceFallback(
         "lifecycle_msgs/srv/ChangeState", _asked_mode, _as_it_is
@@ -118,18 +128,20 @@ SERVICE_FALLBACKS: Mapping[str, ServiceFallback] = {
     "system_modes_msgs/srv/GetAvailableModes": ServiceFallback(
         "lifecycle_msgs/srv/GetAvailableStates", _no_fields, _available_modes
     ),
+    "pilothouse_msgs/srv/StartTask": ServiceFallback(
+        "diagnostic_msgs/srv/AddDiagnostics", _named_file, _task_answer
+    ),
 }
-"""By the native type."""
+"""By the native type. No standard type holds waypoints and has an answer."""
 
 TOPIC_FALLBACKS: Mapping[str, TopicFallback] = {
     "system_modes_msgs/msg/ModeEvent": TopicFallback(
         "lifecycle_msgs/msg/TransitionEvent", _mode_event
     ),
-    "gem_state_msgs/msg/SystemStateStamped": TopicFallback(
-        "diagnostic_msgs/msg/DiagnosticStatus", _system_state
-    ),
-    "gem_state_msgs/msg/TaskPlannerStatus": TopicFallback(
-        "diagnostic_msgs/msg/DiagnosticStatus", _task_status
-    ),
+    **{
+        type_in(messages, name): TopicFallback("diagnostic_msgs/msg/DiagnosticStatus", convert)
+        for messages in MessageSet
+        for name, convert in (("SystemState", _system_state), ("TaskStatus", _task_status))
+    },
 }
 """By the native type."""

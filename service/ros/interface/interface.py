@@ -22,7 +22,10 @@ from service.ros.interface.part_topics import PartTopics
 from service.ros.interface.reading_topics import reading_topics
 from service.ros.interface.robot_topics import RobotTopics
 from service.ros.interface.services import LifecycleServices, ModeServices, robot_services
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
+from service.ros.interface.task_services import TaskServices
 from service.supervisor import Supervisor
+from service.worker import InlineJobs, Jobs
 
 log = logging.getLogger(__name__)
 
@@ -34,17 +37,31 @@ produces events faster than a fixed small number per pass can handle."""
 class RosInterface:
     """Services and topics of all parts and of the robot, and the subscribed topics."""
 
-    def __init__(self, supervisor: Supervisor) -> None:
+    def __init__(
+        self,
+        supervisor: Supervisor,
+        settings: InterfaceSettings = USUAL_SETTINGS,
+        jobs: Jobs | None = None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            supervisor: Of the robot.
+            settings: Of the robot file.
+            jobs: Do what would keep the event loop; None: it is done here.
+        """
         self._supervisor = supervisor
+        self.parts = supervisor.model.parts
+        """Names of the parts, in the order of the model."""
         self._listeners = Listeners()
         self._part_topics = PartTopics(supervisor, self._listeners)
-        self._robot_topics = RobotTopics(supervisor, self._listeners)
-        self._overlay = Overlay(supervisor, self._listeners)
-        parts = supervisor.model.parts
+        self._robot_topics = RobotTopics(supervisor, self._listeners, settings.messages)
+        self._overlay = Overlay(supervisor, self._listeners, settings.frame_id)
         services = chain(
-            *(LifecycleServices(supervisor, part).offered() for part in parts),
-            *(ModeServices(supervisor, part).offered() for part in parts),
+            *(LifecycleServices(supervisor, part).offered() for part in self.parts),
+            *(ModeServices(supervisor, part).offered() for part in self.parts),
             robot_services(supervisor),
+            TaskServices(supervisor, settings.folder, jobs or InlineJobs()).offered(),
         )
         offering = (self._part_topics, self._robot_topics, self._overlay)
         topics = chain.from_iterable(each.offered() for each in offering)
@@ -55,7 +72,7 @@ class RosInterface:
         """By full name."""
         self.topics: Mapping[str, OfferedTopic] = {topic.name: topic for topic in topics}
         """By full name."""
-        heard = (*reading_topics(supervisor), checkpoint_topic(supervisor))
+        heard = (*reading_topics(supervisor, settings.messages), checkpoint_topic(supervisor))
         self.heard: Mapping[str, SubscribedTopic] = {topic.name: topic for topic in heard}
         """By full name."""
 

@@ -14,8 +14,10 @@ class Kind(Enum):
     UINT8 = "a whole number from 0 to 255"
     INT32 = "a whole number of 32 bits"
     UINT32 = "a whole number of 32 bits, at least 0"
+    UINT64 = "a whole number of 64 bits, at least 0"
     NUMBER = "a number"
     TEXT = "a text"
+    LIST = "a list"
 
 
 Shape: TypeAlias = "Mapping[str, Kind | Shape]"
@@ -35,19 +37,38 @@ HEADER: Shape = {
 """The headers of ROS 2 and of ROS 1, whose clients are in use with rosbridge."""
 CHANGE_STATE: Shape = {"transition": {"id": Kind.UINT8, "label": Kind.TEXT}}
 CHANGE_MODE: Shape = {"mode_name": Kind.TEXT}
+START_TASK: Shape = {
+    "file": Kind.TEXT,
+    "start_index": Kind.UINT64,
+    "controller": Kind.TEXT,
+    "speed_mps": Kind.NUMBER,
+}
+DRIVE_WAYPOINTS: Shape = {
+    "waypoints": Kind.LIST,
+    "start_index": Kind.UINT64,
+    "controller": Kind.TEXT,
+    "speed_mps": Kind.NUMBER,
+}
+"""Of its waypoints each is to be checked as `WAYPOINT`, which takes long if there are many."""
+WAYPOINT: Shape = {"x_m": Kind.NUMBER, "y_m": Kind.NUMBER, "yaw_rad": Kind.NUMBER}
 
-_DEFAULTS: Mapping[Kind, bool | int | float | str] = {
+_DEFAULTS: Mapping[Kind, bool | int | float | str | tuple[()]] = {
     Kind.BOOLEAN: False,
     Kind.UINT8: 0,
     Kind.INT32: 0,
     Kind.UINT32: 0,
+    Kind.UINT64: 0,
     Kind.NUMBER: 0.0,
     Kind.TEXT: "",
+    Kind.LIST: (),
 }
+_MAX_NUMBER = 2**1023
+"""A larger integer is beyond a float of 64 bits, and would fail wherever it becomes one."""
 _RANGES: Mapping[Kind, range] = {
     Kind.UINT8: range(2**8),
     Kind.INT32: range(-(2**31), 2**31),
     Kind.UINT32: range(2**32),
+    Kind.UINT64: range(2**64),
 }
 
 
@@ -101,10 +122,12 @@ def _fits(kind: Kind, value: object) -> bool:
     """Tell whether a value is of a kind; booleans and numbers are different kinds."""
     if kind is Kind.TEXT:
         return isinstance(value, str)
+    if kind is Kind.LIST:
+        return isinstance(value, list)
     if kind is Kind.BOOLEAN or isinstance(value, bool):
         return kind is Kind.BOOLEAN and isinstance(value, bool)
     if kind is Kind.NUMBER:
-        return isinstance(value, int | float)
+        return isinstance(value, float) or (isinstance(value, int) and abs(value) <= _MAX_NUMBER)
     return isinstance(value, int) and value in _RANGES[kind]
 
 

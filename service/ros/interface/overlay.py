@@ -56,8 +56,9 @@ class _PathTold(NamedTuple):
 class Overlay:
     """The two topics of the overlay, fed with frames."""
 
-    def __init__(self, supervisor: Supervisor, listeners: Listeners) -> None:
+    def __init__(self, supervisor: Supervisor, listeners: Listeners, frame_id: str) -> None:
         self._supervisor = supervisor
+        self._frame_id = frame_id
         self._listeners = listeners
         self._drawn: DrawnPath | None = None
         """The path of the task that is not ended; None: there is none."""
@@ -132,7 +133,7 @@ class Overlay:
 
     def _header(self, frame: Frame) -> Fields:
         stamped = header(self._supervisor.clock, frame.at)
-        return {**stamped, "frame_id": self._supervisor.frame_id}
+        return {**stamped, "frame_id": self._frame_id}
 
     def _markers(self, frame: Frame) -> Iterator[Fields]:
         """Yield all markers; what is not there is removed, whatever was drawn before."""

@@ -1,4 +1,4 @@
-"""The topics on which smart_polaris receives its five signals; each has its own type."""
+"""The topics of the five signals, as in smart_polaris; each has its own type."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -14,10 +14,11 @@ from domain.timebase import Instant
 from service.clock import EPOCH, Clock
 from service.ros.interface.endpoints import Fields, SubscribedTopic
 from service.ros.interface.message_check import HEADER, Kind, checked
+from service.ros.interface.message_sets import MessageSet, type_in
 from service.supervisor import Supervisor
 
 _STRENGTHS = ("NOT_CONNECTED", "CONNECTED", "LOW_SIGNAL")
-"""In the order of the constants in SignalStrengthStamped.msg of smart_polaris."""
+"""In the order of the constants in SignalStrength.msg, which are those of smart_polaris."""
 
 
 STOP_FIELDS = ("enabled", "data", "value")
@@ -42,26 +43,27 @@ class _Input:
 
     signal: str
     type: str
+    """As in our own package."""
     field: str
     kind: Kind
     read: Callable[[Any], SignalValue] = _as_it_is
 
 
 _INPUTS = (
-    _Input("battery_level", "BatteryLevelStamped", "battery_level", Kind.NUMBER),
-    _Input("estop", "EstopStamped", "enabled", Kind.BOOLEAN),
-    _Input("gps_accuracy", "GpsAccuracyStamped", "accuracy", Kind.NUMBER),
-    _Input("signal_strength", "SignalStrengthStamped", "strength", Kind.UINT8, _strength),
-    _Input("temperature", "TemperatureStamped", "temperature", Kind.NUMBER),
+    _Input("battery_level", "BatteryLevel", "battery_level", Kind.NUMBER),
+    _Input("estop", "EmergencyStop", "enabled", Kind.BOOLEAN),
+    _Input("gps_accuracy", "GpsAccuracy", "accuracy", Kind.NUMBER),
+    _Input("signal_strength", "SignalStrength", "strength", Kind.UINT8, _strength),
+    _Input("temperature", "Temperature", "temperature", Kind.NUMBER),
 )
 
 
-def reading_topics(supervisor: Supervisor) -> Iterable[SubscribedTopic]:
-    """Return the topics whose messages become readings."""
+def reading_topics(supervisor: Supervisor, messages: MessageSet) -> Iterable[SubscribedTopic]:
+    """Return the topics whose messages become readings, with the types of a package."""
     return tuple(
         SubscribedTopic(
             name=f"/{given.signal}",
-            type=f"gem_state_msgs/msg/{given.type}",
+            type=type_in(messages, given.type),
             take=partial(_take, supervisor, given),
         )
         for given in _INPUTS

@@ -7,18 +7,14 @@ from service.frame_publisher import PERIOD
 from service.ros.interface.diagnostics import diagnostic_array
 from service.ros.interface.endpoints import OWN_NODE, Listeners, OfferedTopic
 from service.ros.interface.message_fields import header
+from service.ros.interface.message_sets import MessageSet, type_in
 from service.supervisor import Supervisor
 
 SYSTEM_STATE = "/system_state"
 TASK_STATUS = "/task_planner_status"
 DIAGNOSTICS = "/diagnostics"
-_TYPES = {
-    SYSTEM_STATE: "gem_state_msgs/msg/SystemStateStamped",
-    TASK_STATUS: "gem_state_msgs/msg/TaskPlannerStatus",
-    DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray",
-}
 
-# The constants of SystemStateStamped.msg and TaskPlannerStatus.msg of smart_polaris.
+# The constants of SystemState.msg and TaskStatus.msg, which are those of smart_polaris.
 _STATES = {state: number for number, state in enumerate(SystemState)}
 _TASK_STATUSES = {status: number for number, status in enumerate(TaskStatus)}
 
@@ -29,7 +25,12 @@ _DIAGNOSTICS_PERIOD = seconds(1.0) - PERIOD // 2
 class RobotTopics:
     """The topics of the robot as a whole, fed with its frames."""
 
-    def __init__(self, supervisor: Supervisor, listeners: Listeners) -> None:
+    def __init__(self, supervisor: Supervisor, listeners: Listeners, messages: MessageSet) -> None:
+        self._types = {
+            SYSTEM_STATE: type_in(messages, "SystemState"),
+            TASK_STATUS: type_in(messages, "TaskStatus"),
+            DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray",
+        }
         self._clock = supervisor.clock
         self._listeners = listeners
         self._told: int | None = None
@@ -41,7 +42,7 @@ class RobotTopics:
         """Return the topics."""
         return tuple(
             OfferedTopic(name, type_name, OWN_NODE, False, False, on_demand=name == DIAGNOSTICS)
-            for name, type_name in _TYPES.items()
+            for name, type_name in self._types.items()
         )
 
     def take(self, frames: FrameFeed) -> None:

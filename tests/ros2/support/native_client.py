@@ -1,4 +1,4 @@
-"""Asks and hears in the types of system_modes and smart_polaris, and prints what came as JSON.
+"""Asks and hears in the types of system_modes and our own, and prints what came as JSON.
 
 Runs as a process of its own, whose environment names the packages that were built.
 """
@@ -25,7 +25,7 @@ class Heard:
         self.modes.append((message.start_mode.label, message.goal_mode.label))
 
     def state(self, message: Any) -> None:  # noqa: ANN401
-        """Note a SystemStateStamped."""
+        """Note a SystemState."""
         stamp = message.header.stamp
         self.states.append((stamp.sec + stamp.nanosec / 1e9, message.state, message.error_code))
 
@@ -33,7 +33,7 @@ class Heard:
 def main() -> None:
     """Bring the robot into a mode, press its emergency stop, and say what was heard."""
     rclpy: Any = import_module("rclpy")
-    modes, gem = import_module("system_modes_msgs.msg"), import_module("gem_state_msgs.msg")
+    modes, own = import_module("system_modes_msgs.msg"), import_module("pilothouse_msgs.msg")
     services = import_module("system_modes_msgs.srv")
     rclpy.init()
     node = rclpy.create_node("native_client")
@@ -55,18 +55,16 @@ def main() -> None:
     hears_modes = node.create_subscription(
         modes.ModeEvent, "/actuation/mode_event", heard.mode, 100
     )
-    hears_states = node.create_subscription(
-        gem.SystemStateStamped, "/system_state", heard.state, 100
-    )
-    estop = node.create_publisher(gem.EstopStamped, "/estop", 10)
+    hears_states = node.create_subscription(own.SystemState, "/system_state", heard.state, 100)
+    estop = node.create_publisher(own.EmergencyStop, "/estop", 10)
     until(lambda: hears_modes.get_publisher_count() + hears_states.get_publisher_count() == 2)
     until(lambda: estop.get_subscription_count() > 0)
 
     success = call("/actuation/change_mode", services.ChangeMode, mode_name="PERFORMANCE").success
     until(lambda: len(heard.states) >= STATES)
     pressed = len(heard.states)
-    estop.publish(gem.EstopStamped(enabled=True))
-    until(lambda: bool(heard.states[-1][2] & gem.SystemStateStamped.ERROR_ESTOP))
+    estop.publish(own.EmergencyStop(enabled=True))
+    until(lambda: bool(heard.states[-1][2] & own.SystemState.ERROR_ESTOP))
     print(
         json.dumps(
             {

@@ -28,10 +28,11 @@ class NodeProcess:
     Args:
         script: What to run.
         arguments: Of the script.
+        environment: More variables, as `NAME=value`.
     """
 
-    def __init__(self, script: Path, *arguments: str) -> None:
-        self._command = [sys.executable, str(script), *arguments]
+    def __init__(self, script: Path, *arguments: str, environment: Sequence[str] = ()) -> None:
+        self._command = ["env", *environment, sys.executable, str(script), *arguments]
         self._process: subprocess.Popen[bytes] | None = None
 
     def start(self) -> None:
@@ -48,15 +49,19 @@ class NodeProcess:
 
 
 @contextmanager
-def node(script: Path | str, *arguments: str, start: bool = True) -> Iterator[NodeProcess]:
+def node(
+    script: Path | str, *arguments: str, start: bool = True, environment: Sequence[str] = ()
+) -> Iterator[NodeProcess]:
     """Run a node as long as the context lasts.
 
     Args:
         script: A file, or the name of an example node.
         arguments: Of the script.
         start: Whether to start it at once; otherwise somebody calls `start`.
+        environment: More variables, as `NAME=value`.
     """
-    process = NodeProcess(NODES / f"{script}.py" if isinstance(script, str) else script, *arguments)
+    file = NODES / f"{script}.py" if isinstance(script, str) else script
+    process = NodeProcess(file, *arguments, environment=environment)
     if start:
         process.start()
     try:

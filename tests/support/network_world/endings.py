@@ -80,9 +80,8 @@ def _parameters(core: Supervision, node: PartName) -> dict[str, object]:
 def a_release_ends_all_stops(world: World) -> None:
     """Release at the supervisor all that it sees.
 
-    Another device may know of a stop through a process that is gone: until it gives up to hear of
-    it, or another process takes its place. A stop of a second process of one name, which is gone,
-    is ended by name wherever it is known: nobody can tell on its behalf that it is over.
+    A stop of a process that is gone, and of which the one in its place knows nothing, is ended by
+    name wherever it is known: nobody can tell on its behalf that it is over.
     """
     world.ask(SUPERVISOR, EmergencyStopRequest(False, "all clear", ADA))
     world.wait_until(lambda: not _stopped(world), 1.0)
@@ -90,7 +89,7 @@ def a_release_ends_all_stops(world: World) -> None:
     assert not view.engaged, f"the supervisor is stopped: {view}"
     world.wait_until(lambda: not _stopped(world), LOST_AMONG_DEVICES_S)
     for name, view in _stopped(world).items():
-        left = {stop.id for stop in view.stops} - world.oracles.stops.gone_for_good
+        left = {stop.id for stop in view.stops} - world.oracles.stops.forgotten
         assert not left, f"{name} is stopped: {view}"
         world.ask(name, EmergencyStopRequest(False, "the other one is gone", ADA))
     world.wait_until(lambda: not _stopped(world), 1.0)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from domain.commands import AskTransition
-from domain.computers import ComputerName, Incarnation, StopId
+from domain.computers import SUPERVISOR, ComputerName, Incarnation, StopId
 from domain.inputs import EmergencyStopRequest, Input
 from domain.lifecycle import Transition
 from domain.link.messages import Beat, Message
@@ -21,6 +21,8 @@ class _Seen:
 
     own: frozenset[StopId] = frozenset()
     all: frozenset[StopId] = frozenset()
+    certain: set[StopId] = field(default_factory=set)
+    """Those of which it was told just now, as an echo showed, by a process that has them."""
     newest: dict[Incarnation, int] = field(default_factory=dict)
     """`seq` of the newest beat that it read, by who sent it."""
     told: dict[ComputerName, tuple[Instant, frozenset[StopId]]] = field(default_factory=dict)
@@ -41,8 +43,6 @@ class StopOracle:
         self.forgotten: set[StopId] = set()
         """Those of a process that was started again without the store that had them, or that is
         gone for good."""
-        self.gone_for_good: set[StopId] = set()
-        """Those of a process after which none was started."""
         self.counts = {"stops": 0, "told": 0}
         self._owners: dict[StopId, Process] = {}
         """Who engaged it first."""
@@ -63,8 +63,7 @@ class StopOracle:
 
     def gone(self, endpoint: str) -> None:
         """Note that nobody will start again what ended there."""
-        self.gone_for_good |= self._left.pop(endpoint, frozenset())
-        self.forgotten |= self.gone_for_good
+        self.forgotten |= self._left.pop(endpoint, frozenset())
 
     def asked(self, process: Process, request: Input) -> None:
         """Note what a person asks, before it happens."""
@@ -90,7 +89,9 @@ class StopOracle:
         self.counts["told"] += bool(told)
         # Of the end of a stop it may have heard on another way, before.
         missing = {stop for stop in told - self._all(process) if self._is_engaged(stop)}
-        if missing and not self._is_fresh(process, message):
+        if self._is_fresh(process, message):
+            seen.certain |= told
+        elif missing:
             missing = {stop for stop in missing if not self._is_replaced(stop)}
         assert not missing, f"{process.name} was told of {missing}, and is not stopped by it"
 
@@ -104,8 +105,8 @@ class StopOracle:
         self.counts["stops"] += len(own - before)
         for stop in own:
             self._owners.setdefault(stop, process)
-        ended = before - every - self.released - self.forgotten
-        ended = frozenset(stop for stop in ended if not self._is_replaced(stop))
+        ended = before - every - self.released
+        ended = frozenset(stop for stop in ended if not self._may_end(process, stop))
         assert not ended, f"{ended} ended at {process.name} by {step.given}, and nobody released it"
         is_press = isinstance(step.given, EmergencyStopRequest)
         if was_stopped and every and not is_press:
@@ -114,6 +115,16 @@ class StopOracle:
                     isinstance(command, AskTransition) and command.transition is Transition.ACTIVATE
                 )
                 assert not is_activation, f"{command} by {process.name}, which is stopped"
+
+    def _may_end(self, process: Process, stop: StopId) -> bool:
+        """Tell whether a stop may end at a process although nobody released it.
+
+        The supervisor keeps those of devices, of which it was told when they were engaged.
+        """
+        is_kept = process.name == SUPERVISOR and self._owners[stop].name != SUPERVISOR
+        if is_kept and stop in self._seen[process.incarnation].certain:
+            return False
+        return stop in self.forgotten or self._is_replaced(stop)
 
     def _is_fresh(self, process: Process, beat: Beat) -> bool:
         """Tell whether a beat was sent just now, as its echo shows.

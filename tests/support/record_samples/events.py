@@ -30,6 +30,8 @@ from domain.events.driving import (
     HoldReleaseRequested,
     HoldRequested,
     HoldSet,
+    NavigationAvailable,
+    NavigationUnavailable,
     TaskAborted,
     TaskCanceled,
     TaskCancelRequested,
@@ -173,6 +175,8 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     ),
     "drive.available": (DriveAvailable(),),
     "drive.unavailable": (DriveUnavailable(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "navigation.available": (NavigationAvailable(),),
+    "navigation.unavailable": (NavigationUnavailable(reason="the controller gave no feedback"),),
     "emergency_stop.engaged": (EmergencyStopEngaged(reason='Größe ≤ 3 — "gripper\\jam"'),),
     "emergency_stop.peer_engaged": (
         PeerStopEngaged(

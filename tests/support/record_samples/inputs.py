@@ -14,6 +14,14 @@ from domain.computers import (
     Session,
     StopId,
 )
+from domain.controller import (
+    ControllerAnswer,
+    ControllerFeedback,
+    ControllerResult,
+    ControllerStatus,
+    GoalOutcome,
+    NavigationStatus,
+)
 from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.identifiers import ChangeId, GoalId
 from domain.inputs import (
@@ -173,6 +181,31 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             command=DriveCommand(speed_mps=1.5, steering_angle_rad=0.0625),
             left_out_m=0.0,
         ),
+        GoalFeedback(
+            goal=GoalId(5),
+            target_index=12,
+            distance_m=51.3,
+            cross_track_error_m=-0.125,
+            lookahead=None,
+            command=None,
+        ),
+    ),
+    "controller_status": (
+        ControllerStatus(available=False, reason="there is no controller at /navigate_waypoints"),
+        ControllerStatus(available=True),
+    ),
+    "controller_answer": (
+        ControllerAnswer(goal=GoalId(5), accepted=False, reason='Größe ≤ 3 — "gripper\\jam"'),
+        ControllerAnswer(goal=GoalId(5), accepted=True),
+    ),
+    "controller_feedback": (ControllerFeedback(goal=GoalId(5), target_index=12, progress=0.25),),
+    "controller_result": (
+        ControllerResult(goal=GoalId(5), end=GoalOutcome.ABORTED, reason="the battery is empty"),
+        ControllerResult(goal=GoalId(5), end=GoalOutcome.SUCCEEDED),
+    ),
+    "navigation_status": (
+        NavigationStatus(available=False, reason="the controller gave no feedback for 1 s"),
+        NavigationStatus(available=True),
     ),
     "goal_result": (
         GoalResult(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),

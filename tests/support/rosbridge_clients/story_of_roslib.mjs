@@ -54,7 +54,7 @@ async function tell() {
   const status = new Promise((resolve) => ros.on("status:bad", resolve));
   ros.callOnConnection({ op: "no_such_op", id: "bad" });
   told.status = await status;
-  new Topic({ ros, name: "/estop", messageType: "gem_state_msgs/EstopStamped" }).publish({
+  new Topic({ ros, name: "/estop", messageType: "pilothouse_msgs/EmergencyStop" }).publish({
     enabled: true,
   });
   told.stopped = await nextState((state) => state.state === 2);

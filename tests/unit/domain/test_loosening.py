@@ -28,6 +28,7 @@ from domain.inputs import (
 from domain.lifecycle import Transition
 from domain.loosening import may_loosen
 from domain.paths.path import Path
+from domain.process_terms import ProcessAction, ProcessRequest
 from tests.support.models import BASE
 
 HELD = ["operator"]
@@ -41,6 +42,8 @@ LOOSENING = (
     ReleaseRequest("operator"),
     AcknowledgeRequest(ESTOP),
     ShelveRequest(ESTOP, 1, "known"),
+    ProcessRequest(BASE, ProcessAction.START),
+    ProcessRequest(BASE, ProcessAction.RESTART),
     RELEASE_STOP,
 )
 SAFER = (
@@ -49,6 +52,7 @@ SAFER = (
     TransitionRequest(BASE, Transition.SHUTDOWN),
     HoldRequest("operator", "lunch"),
     CancelTaskRequest(),
+    ProcessRequest(BASE, ProcessAction.STOP),
     UnshelveRequest(ESTOP),
     CancelRequest(ChangeId("c1")),
     EmergencyStopRequest(engaged=True, reason="smoke"),

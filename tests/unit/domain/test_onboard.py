@@ -6,8 +6,12 @@ import pytest
 
 from domain.actor import Actor
 from domain.commands import Drive
+from domain.computers import ComputerName
+from domain.controller import ControllerFeedback, ControllerStatus
 from domain.errors import InvalidValueError
+from domain.identifiers import GoalId
 from domain.inputs import ModeRequest, Reading, Readings, TaskRequest, TimePassed, VehicleReport
+from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
 from domain.snapshot import TaskPhase
 from domain.timebase import seconds
@@ -16,6 +20,7 @@ from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, BASE, actuation_model
 from tests.support.paths import straight
+from tests.support.scripted_controller import ControlledRobot
 
 
 @pytest.fixture
@@ -312,3 +317,31 @@ def test_a_late_input_that_is_refused_changes_nothing_and_judges_nothing(robot: 
     assert robot.core.system_state().errors == ()
     robot.onboard.handle(TimePassed(), late)
     assert robot.core.system_state().errors == ("STALE_DATA",)
+
+
+def test_what_a_controller_says_to_a_robot_that_has_none_is_left_aside(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
+    outputs = robot.give(ControllerStatus(available=False, reason="gone"))
+
+    assert (outputs.commands, outputs.events) == ((), ())
+    assert robot.task.status is TaskPhase.RUNNING
+
+
+def test_deadlines_of_the_core_come_before_what_a_controller_says() -> None:
+    robot = ControlledRobot()
+    robot.submit_task(straight())
+    robot.drive(1)
+    outputs = robot.onboard.handle(ControllerFeedback(GoalId(1), 1, 0.1), robot.now + seconds(0.4))
+    told = [event for event in outputs.events if event.kind == "hold.set"]
+
+    assert [event.data["owner"] for event in told] == ["vehicle"]
+    assert told[0].at == robot.now + seconds(0.3) + 1
+
+
+def test_devices_that_changed_are_told_with_what_was_due_before() -> None:
+    parts = (Outputs(devices=frozenset({ComputerName("arm")})), Outputs(task_changed=True))
+    robot = CoreRobot(SmhModel({}, {}))
+    robot.onboard._untold += parts  # noqa: SLF001  # of calls whose input was rejected
+    outputs = robot.onboard.handle(TimePassed(), robot.now)
+
+    assert outputs.devices == {"arm"}

@@ -167,7 +167,7 @@ async def test_an_error_that_a_reading_shows_is_raised_at_once_after_a_stall(
 
 async def test_a_pose_that_does_not_come_is_too_old_in_spite_of_the_stall(robot: Robot) -> None:
     await robot.drive()
-    robot.backend.set_vehicle_reporting(False)
+    robot.backend.set_vehicle_fault("silent")
     await robot.clock.advance(0.1)
     await robot.stall()
     await robot.clock.advance(0.06)

@@ -2,14 +2,16 @@ import numpy as np
 import pytest
 
 from domain.actor import Actor
-from domain.errors import InvalidValueError
-from domain.inputs import Reading, Readings, TaskRequest, VehicleReport
+from domain.errors import InvalidValueError, UnknownProcessError
+from domain.external_navigation import ExternalNavigation
+from domain.inputs import Reading, Readings, TaskRequest, TimePassed, VehicleReport
+from domain.navigation import Navigation
 from domain.paths.path import Path
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleState
 from service.files.robot_file import RobotSettings
 from service.onboard_parts import make_onboard
-from tests.support.models import actuation_model
+from tests.support.models import ARM, BASE, actuation_model
 
 MODEL = actuation_model()
 START = seconds(50.0)
@@ -43,6 +45,29 @@ def test_navigation_is_as_the_settings_say() -> None:
     assert navigation.settings.speed.braking_mps2 == 0.5
 
 
+CONTROLLER = {"navigation": {"action": "/go", "silent_for_s": 2.5, "end_tolerance_m": 0.2}}
+
+
+def test_an_external_controller_drives_a_real_robot_whose_file_names_one() -> None:
+    robot = settings(backend="ros2", ros2=CONTROLLER, driving={"max_cross_track_m": 1.5})
+    onboard = make_onboard(MODEL, robot, START)
+
+    assert isinstance(onboard.navigation, ExternalNavigation)
+    assert onboard.navigation.settings.max_cross_track_m == 1.5
+    onboard.handle(TimePassed(), START)
+    hold = onboard.core.driving.holds["navigation"]
+    assert hold.reason == "no controller was seen at /go yet"
+    controller = robot.to_controller_settings()
+    assert controller is not None
+    assert (controller.silent_for, controller.end_tolerance_m) == (seconds(2.5), 0.2)
+
+
+@pytest.mark.parametrize("said", [{}, {"backend": "simulated"}])
+def test_the_trackers_on_board_drive_a_simulated_one(said: dict[str, str]) -> None:
+    onboard = make_onboard(MODEL, settings(ros2=CONTROLLER, **said), START)
+    assert isinstance(onboard.navigation, Navigation)
+
+
 def task(begins_at_m: float, speed_mps: float) -> TaskRequest:
     """Return a task along the x axis."""
     x = np.linspace(begins_at_m, begins_at_m + 20.0, 41)
@@ -67,3 +92,18 @@ def test_tasks_are_judged_as_the_settings_say(
             onboard.handle(task(begins_at_m, speed_mps), START)
     else:
         assert onboard.handle(task(begins_at_m, speed_mps), START).task is not None
+
+
+def test_each_computer_runs_the_processes_of_its_own_nodes() -> None:
+    process = {"process": {"command": ["node"]}}
+    said: dict[str, object] = {
+        "nodes": {"drive_base": process, "manipulator": process},
+        "devices": {"arm": {"parts": ["manipulator"]}},
+    }
+    supervisor = make_onboard(MODEL, settings(**said), START).core
+    device = make_onboard(MODEL, settings(**said, device="arm"), START).core
+
+    assert supervisor.processes.view(BASE).node == BASE
+    with pytest.raises(UnknownProcessError):
+        supervisor.processes.view(ARM)
+    assert device.processes.view(ARM).node == ARM

@@ -4,13 +4,23 @@ import pytest
 
 from domain.actor import Actor
 from domain.commands import Drive
+from domain.controller import (
+    ControllerAnswer,
+    ControllerFeedback,
+    ControllerResult,
+    ControllerStatus,
+)
 from domain.errors import InvalidModelError
 from domain.inputs import HoldRequest, ReleaseRequest, TimePassed
+from domain.parts.system_model import SmhModel
 from domain.vehicle import DriveCommand
+from service.checkpoint import checkpoint_of, core_of_checkpoint
+from service.codec.codec import STEPS
 from service.codec.recorded_step import RecordedStep
 from service.replay import Difference, core_of_boot, replay
 from tests.support.good import GOOD
 from tests.support.recorded_robot import BOOT, RecordedRobot
+from tests.support.scripted_controller import ControlledRobot, make_controlled
 
 
 @pytest.fixture(scope="module")
@@ -140,3 +150,36 @@ def test_a_robot_without_a_robot_file_has_the_defaults() -> None:
     core = core_of_boot(replace(BOOT, robot=""))
 
     assert set(core.core.signals()) == set(GOOD)
+
+
+def test_what_an_external_controller_said_leads_to_the_same_again() -> None:
+    robot = ControlledRobot()
+    robot.submit_task()
+    robot.drive(3)
+    robot.be(heeds_cancel=False)
+    robot.hold()
+    robot.drive(2)
+    robot.be(heeds_cancel=True)
+    robot.drive(2)
+    robot.release()
+    robot.drive(2)
+    recorded = [STEPS.decode(STEPS.encode(step)) for step in robot.taken]
+    given = {type(step.given) for step in recorded}
+    assert {ControllerStatus, ControllerAnswer, ControllerFeedback, ControllerResult} <= given
+
+    replayed = replay(make_controlled(SmhModel({}, {})), recorded)
+
+    assert replayed.difference is None
+    assert replayed.steps == len(recorded)
+
+
+def test_an_external_controller_is_in_a_checkpoint() -> None:
+    robot = ControlledRobot()
+    robot.submit_task()
+    robot.drive(3)
+    done = len(robot.taken)
+    copy = core_of_checkpoint(checkpoint_of(robot.onboard, "1"), "1")
+    robot.hold()
+    robot.drive(3)
+
+    assert replay(copy, robot.taken[done:]).difference is None

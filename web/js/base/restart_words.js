@@ -4,7 +4,7 @@ import { currentTask } from "/web/js/base/store.js";
 import { timeOfDay } from "/web/js/base/words.js";
 
 /** Holds that Pilothouse sets and clears by itself. */
-const OWN = new Set(["restart", "error", "vehicle", "drive_process"]);
+const OWN = new Set(["restart", "error", "vehicle", "drive_process", "navigation"]);
 
 /** "Started again at 14:02:03; it remembers task t1 and the hold of gate"; null while unknown. */
 export function rememberedWords({ restartedAt, boot, systemState, holds, parts, ...state }) {

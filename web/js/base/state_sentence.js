@@ -52,8 +52,8 @@ export function robotSentence(state) {
   }
   const { word, text } = activity(state, task);
   const [first, ...more] = [...reasonTexts, ...found];
-  const { vehicle, drive_process: undriven } = state.holds;
-  const isWrong = first || vehicle || undriven;
+  const { vehicle, drive_process: undriven, navigation } = state.holds;
+  const isWrong = first || vehicle || undriven || navigation;
   const level = alarm ? "error" : isWrong ? "attention" : (LEVELS[word] ?? "calm");
   const sign = alarm ? "error" : word.toLowerCase();
   return sentence([level, sign], alarm ?? word, first ? `${first}; ${text}` : text, more);

@@ -18,6 +18,7 @@ const UNTIL = {
   error: "until the errors end",
   vehicle: "until there is a pose",
   drive_process: "until the vehicle can be commanded",
+  navigation: "until its controller can be given a goal",
 };
 
 /** Whether a person may release it: Pilothouse clears its own holds, but for that of a restart. */

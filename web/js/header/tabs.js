@@ -30,10 +30,17 @@ class Tabs extends HTMLElement {
         setAttribute(button, "tabindex", name === chosen ? 0 : -1);
       }
     }
+    if (this.seen?.ownDevice !== state.ownDevice) this.#leaveOutMap(state.ownDevice !== null);
     if (this.seen?.errors !== state.errors) this.#count("status", errorCount(state.errors), "error");
     if (this.seen?.parts !== state.parts) this.#count("parts", partCount(state), "attention");
     if (this.seen?.signals !== state.signals) this.#count("signals", signalCount(state.signals), "attention");
     this.seen = state;
+  }
+
+  /** A device has neither vehicle nor task. */
+  #leaveOutMap(isLeftOut) {
+    setAttribute(document.getElementById("panels-map"), "hidden", isLeftOut);
+    if (isLeftOut && document.body.dataset.tab === "map") this.#choose("status");
   }
 
   #count(tabName, number, level) {
@@ -49,12 +56,13 @@ class Tabs extends HTMLElement {
   }
 
   #move(event) {
-    const at = this.tabs.findIndex(({ name }) => name === this.chosen);
+    const tabs = this.tabs.filter(({ button }) => !button.hidden);
+    const at = tabs.findIndex(({ name }) => name === this.chosen);
     const step = STEPS[event.key];
-    const to = event.key === "Home" ? 0 : event.key === "End" ? TABS.length - 1 : step && at + step;
+    const to = event.key === "Home" ? 0 : event.key === "End" ? tabs.length - 1 : step && at + step;
     if (to === undefined) return;
     event.preventDefault();
-    const { name, button } = this.tabs[(to + TABS.length) % TABS.length];
+    const { name, button } = tabs[(to + tabs.length) % tabs.length];
     this.#choose(name);
     button.focus();
   }

@@ -6,6 +6,8 @@ from hypothesis import strategies as st
 
 from api.cli.checked_file import CheckedFile, as_json, as_text
 from api.cli.sarif import as_sarif
+from domain.computers import ComputerName
+from domain.devices.sub_model import LeftOut
 from domain.findings import Finding
 from service.files.model_file import check_model
 
@@ -82,3 +84,17 @@ def test_whatever_is_in_a_file_programs_get_json(text: str) -> None:
     assert len(run["results"]) == len(json.loads(as_json([file]))["findings"]) == len(file.findings)
     for result in run["results"]:
         assert run["tool"]["driver"]["rules"][result["ruleIndex"]]["id"] == result["ruleId"]
+
+
+def test_what_devices_leave_to_the_supervisor_follows_the_verdicts() -> None:
+    files = [CheckedFile("robot.yaml", "a", ())]
+    left = {ComputerName("arm"): (LeftOut("guard of arm, estop == false", "estop is not its own"),)}
+
+    assert list(as_text(files, left)) == [
+        "robot.yaml: valid",
+        "device arm leaves to the supervisor:",
+        "  guard of arm, estop == false: estop is not its own",
+    ]
+    (shown,) = json.loads(as_json(files, left))["left_out"]
+    assert shown["device"] == "arm"
+    assert json.loads(as_json(files))["left_out"] == []

@@ -61,3 +61,15 @@ def test_an_invalid_robot_file_is_told_beside_the_model(model: Path, robot: Path
 def test_a_file_that_is_not_there_is_told(model: Path) -> None:
     with pytest.raises(UnreadableFileError):
         read_robot_files(str(model), "/nowhere/robot.yaml")
+
+
+def test_what_a_device_leaves_to_the_supervisor_is_found(model: Path, robot: Path) -> None:
+    guard = "    mode_settings: {STRONG: {requires: [battery_level > 0.2]}}\n"
+    model.write_text(f"{ACTUATION}{guard}")
+    robot.write_text("devices: {arm: {parts: [manipulator]}, base: {parts: [drive_base]}}\n")
+
+    read = read_robot_files(str(model), str(robot))
+
+    assert {device: [each.reason for each in left] for device, left in read.left_out.items()} == {
+        "arm": ["battery_level is not its own"]
+    }

@@ -8,9 +8,9 @@ import pytest
 
 from api.cli.scenario_run import FAILED, HELD, INVALID, simulate
 from api.http.schemas.simulation import SimulationJson
-from api.serving.composition import EXAMPLE
 from api.simulation import samples
 from api.simulation.simulation import Simulation
+from service.files.model_file import EXAMPLE
 
 Output = pytest.CaptureFixture[str]
 

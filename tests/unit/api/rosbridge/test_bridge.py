@@ -9,6 +9,7 @@ from tests.support.manual_clock import ManualClock
 from tests.support.rosbridge import SmallInterface, make_bridge
 
 CHANGE_MODE = "system_modes_msgs/srv/ChangeMode"
+ASKING = ("ChangeMode", "ChangeState", "DriveWaypoints", "StartTask")
 
 
 def test_the_services_are_those_of_the_robot_and_those_of_rosapi() -> None:
@@ -46,6 +47,11 @@ def test_who_calls_too_often_may_still_end_the_task() -> None:
             {"transition": {"id": 0, "label": "activate"}},
         ),
         ("rosapi_msgs/srv/TopicType", ["/estop"], {"topic": "/estop"}),
+        (
+            "pilothouse_msgs/srv/StartTask",
+            ["loop.csv", 0, "stanley"],
+            {"file": "loop.csv", "start_index": 0, "controller": "stanley"},
+        ),
         ("std_srvs/srv/Empty", [], {}),
     ],
 )
@@ -72,7 +78,7 @@ def test_more_values_than_there_are_fields_are_refused(
 async def test_every_service_of_the_robot_takes_a_list_without_values_for_no_fields() -> None:
     supervisor = make_supervisor()
     for service in RosInterface(supervisor).services.values():
-        asks_nothing = service.type.rpartition("/")[2] not in ("ChangeMode", "ChangeState")
+        asks_nothing = service.type.rpartition("/")[2] not in ASKING
 
         if asks_nothing:
             with pytest.raises(InvalidValueError):

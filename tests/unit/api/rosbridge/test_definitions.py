@@ -2,6 +2,7 @@
 
 from api.rosbridge.definitions import MESSAGES, SERVICES, full_text, type_definitions
 from service.ros.interface.interface import RosInterface
+from service.ros.interface.message_sets import ALIASES
 from tests.support.live_robot import make_supervisor
 from tests.unit.examples.test_ros2_interfaces import DECLARED
 
@@ -21,10 +22,18 @@ def test_the_types_that_are_shipped_as_source_are_the_same() -> None:
         package = name.partition("/")[0]
         if kind == "msg":
             found = [line.replace(f"{package}/", "") for line in MESSAGES[name]]
-        else:
+        elif kind == "srv":
             request, response = SERVICES[name]
-            found = [*request, "---", *response]
+            found = [line.replace(f"{package}/", "") for line in (*request, "---", *response)]
+        else:
+            # rosbridge has no actions here.
+            continue
         assert found == lines, file
+
+
+def test_a_message_is_defined_under_both_of_its_names() -> None:
+    for alias, own in ALIASES.items():
+        assert full_text(alias) == full_text(own) != ""
 
 
 def test_every_type_in_a_type_is_defined() -> None:

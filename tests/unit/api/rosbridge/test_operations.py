@@ -150,3 +150,21 @@ def test_a_name_may_lack_its_slash(name: str) -> None:
 )
 def test_a_type_may_be_written_as_ros_1_did_or_left_out(given: str | None, same: bool) -> None:
     assert is_type(given, "std_msgs/msg/Bool") is same
+
+
+@pytest.mark.parametrize(
+    "offered", ["pilothouse_msgs/msg/TaskStatus", "gem_state_msgs/msg/TaskPlannerStatus"]
+)
+@pytest.mark.parametrize(
+    ("given", "same"),
+    [
+        ("pilothouse_msgs/msg/TaskStatus", True),
+        ("pilothouse_msgs/TaskStatus", True),
+        ("gem_state_msgs/msg/TaskPlannerStatus", True),
+        ("gem_state_msgs/TaskPlannerStatus", True),
+        ("gem_state_msgs/TaskStatus", False),
+        ("gem_state_msgs/SystemStateStamped", False),
+    ],
+)
+def test_a_message_may_be_named_as_in_smart_polaris(offered: str, given: str, same: bool) -> None:
+    assert is_type(given, offered) is same

@@ -1,5 +1,6 @@
 import pytest
 
+from api.rosbridge.definitions import full_type
 from api.rosbridge.rosapi import RosApi
 from domain.actor import Actor
 from domain.errors import InvalidValueError
@@ -33,7 +34,7 @@ async def test_all_topics_are_told_with_their_types(rosapi: RosApi) -> None:
     told = await ask(rosapi, "topics")
 
     assert told["topics"] == TOPICS
-    assert told["types"][-1] == "gem_state_msgs/msg/EstopStamped"
+    assert told["types"][-1] == "pilothouse_msgs/msg/EmergencyStop"
     assert len(told["types"]) == len(TOPICS)
 
 
@@ -51,7 +52,7 @@ async def test_the_nodes_are_those_that_have_services(rosapi: RosApi) -> None:
 @pytest.mark.parametrize("name", ["/estop", "estop"])
 async def test_the_type_of_a_topic_is_told(rosapi: RosApi, name: str) -> None:
     assert await ask(rosapi, "topic_type", topic=name) == {
-        "type": "gem_state_msgs/msg/EstopStamped"
+        "type": "pilothouse_msgs/msg/EmergencyStop"
     }
 
 
@@ -65,6 +66,13 @@ async def test_the_type_of_a_service_is_told(rosapi: RosApi, name: str) -> None:
 async def test_what_is_not_there_has_no_type(rosapi: RosApi) -> None:
     assert await ask(rosapi, "topic_type", topic="/nothing") == {"type": ""}
     assert await ask(rosapi, "service_type") == {"type": ""}
+
+
+@pytest.mark.parametrize(
+    "asked", ["pilothouse_msgs/msg/SystemState", "gem_state_msgs/SystemStateStamped"]
+)
+async def test_a_topic_is_found_by_either_name_of_its_type(rosapi: RosApi, asked: str) -> None:
+    assert await ask(rosapi, "topics_for_type", type=asked) == {"topics": ["/system_state"]}
 
 
 @pytest.mark.parametrize(
@@ -140,13 +148,13 @@ async def test_who_has_a_topic_or_service_is_told(rosapi: RosApi) -> None:
 
 
 @pytest.mark.parametrize(
-    "asked", ["gem_state_msgs/msg/EstopStamped", "gem_state_msgs/EstopStamped"]
+    "asked", ["pilothouse_msgs/msg/EmergencyStop", "gem_state_msgs/EstopStamped"]
 )
 async def test_the_details_of_a_message_have_the_types_in_it(rosapi: RosApi, asked: str) -> None:
     first, *nested = (await ask(rosapi, "message_details", type=asked))["typedefs"]
 
     assert first == {
-        "type": "gem_state_msgs/msg/EstopStamped",
+        "type": full_type(asked),
         "fieldnames": ["header", "enabled"],
         "fieldtypes": ["std_msgs/msg/Header", "bool"],
         "fieldarraylen": [-1, -1],

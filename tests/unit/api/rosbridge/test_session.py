@@ -123,7 +123,7 @@ async def test_without_an_id_all_subscriptions_of_a_topic_end(talk: Talk) -> Non
     [
         ({"topic": "/nothing"}, "there is no topic '/nothing' (/rosapi/topics lists"),
         ({"topic": "/estop"}, "/estop can only be published to"),
-        ({"topic": "/system_state", "type": "std_msgs/Bool"}, "is gem_state_msgs/msg/SystemState"),
+        ({"topic": "/system_state", "type": "std_msgs/Bool"}, "is pilothouse_msgs/msg/SystemState"),
         ({"topic": ""}, "/topic"),
     ],
 )
@@ -201,8 +201,13 @@ async def test_when_a_client_goes_nothing_is_listened_to_any_more(talk: Talk) ->
 
 
 @pytest.mark.parametrize("topic", ["/estop", "estop"])
-async def test_a_reading_is_published_under_the_name_of_the_client(talk: Talk, topic: str) -> None:
-    talk.say("advertise", topic=topic, type="gem_state_msgs/EstopStamped", latch=False)
+@pytest.mark.parametrize(
+    "type_name", ["pilothouse_msgs/EmergencyStop", "gem_state_msgs/EstopStamped"]
+)
+async def test_a_reading_is_published_under_the_names_of_the_client(
+    talk: Talk, topic: str, type_name: str
+) -> None:
+    talk.say("advertise", topic=topic, type=type_name, latch=False)
     talk.say("publish", topic=topic, msg={"enabled": True})
     talk.say("unadvertise", topic=topic)
 
@@ -232,7 +237,7 @@ async def test_that_nobody_hears_a_topic_is_told_once(talk: Talk, first: str) ->
 async def test_a_topic_of_another_type_is_refused_when_it_is_advertised(talk: Talk) -> None:
     talk.say("advertise", topic="/estop", type="std_msgs/Bool")
 
-    assert "/estop is gem_state_msgs/msg/EstopStamped" in talk.only()["msg"]
+    assert "/estop is pilothouse_msgs/msg/EmergencyStop" in talk.only()["msg"]
 
 
 async def test_to_end_what_was_not_advertised_is_warned_of(talk: Talk) -> None:

@@ -12,6 +12,7 @@ from service.files.robot_file import RobotSettings, read_robot_file
 from service.link.supervisor_end import SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
+from service.ros.interface.message_sets import MessageSet
 from service.start_task import StartTaskError
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph
@@ -76,6 +77,31 @@ def test_the_settings_of_a_robot_file_reach_the_core_and_the_service(robot: Path
     signal = composition.supervisor.core.signal("battery_level")
     assert signal.settings["threshold"] == 0.3
     assert composition.limits.stream_clients == 3
+
+
+def test_a_simulated_robot_may_name_its_messages_as_smart_polaris_does(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text("ros2: {messages: gem_state_msgs}\n")
+
+    assert composed(ServeOptions(robot=robot)).interface.messages is MessageSet.GEM
+    assert caplog.records == []
+
+
+def test_the_folder_of_waypoint_files_is_beside_the_robot_file(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text("tasks: {folder: tracks}\n")
+
+    folder = composed(ServeOptions(robot=robot)).interface.folder
+    assert folder is not None
+    assert folder.path == robot.parent / "tracks"
+    assert "there is no folder" in caplog.text
+
+    caplog.clear()
+    folder.path.mkdir()
+    composed(ServeOptions(robot=robot))
+    assert caplog.records == []
 
 
 def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:
@@ -200,40 +226,22 @@ def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
     assert supervisor.simulated == (("signals",) if mocked else ())
 
 
-@pytest.mark.parametrize("absent", ["rclpy", LINK])
-def test_without_rclpy_it_is_said_what_to_do(absent: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(sys.modules, LINK, raising=False)
-    monkeypatch.setitem(sys.modules, absent, None)
-
-    with pytest.raises(MisuseError) as caught:
-        composed(ServeOptions(backend="ros2"))
-
-    for way in ("source the setup.bash", "pip install 'pilothouse[ros2]'"):
-        assert way in str(caught.value)
-
-
-def test_a_middleware_that_does_not_start_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    def start() -> None:
-        raise RuntimeError("ROS_DOMAIN_ID is not an integral number")
-
-    link = SimpleNamespace(RosLink=start)
-    monkeypatch.setitem(sys.modules, LINK, link)
-
-    with pytest.raises(MisuseError, match="ROS 2 does not start: ROS_DOMAIN_ID is"):
-        composed(ServeOptions(backend="ros2"))
-
-
 @pytest.mark.parametrize(
     "topics",
     [
         "signals: {estop: {topic: /e, type: gone_msgs/msg/Stop, field: pressed}}",
         "command: {topic: /c, type: ackermann_msgs/msg/AckermannDrive}",
+        "navigation: {action: /go, type: nav2_msgs/action/FollowPath}",
     ],
 )
 def test_a_type_that_the_robot_file_names_has_to_be_there(
     robot: Path, topics: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    absent = ("gone_msgs/msg/Stop", "ackermann_msgs/msg/AckermannDrive")
+    absent = (
+        "gone_msgs/msg/Stop",
+        "ackermann_msgs/msg/AckermannDrive",
+        "nav2_msgs/action/FollowPath",
+    )
     link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock(), absent))
     monkeypatch.setitem(sys.modules, LINK, link)
     robot.write_text(f"ros2: {{{topics}}}\n")
@@ -249,6 +257,16 @@ def test_a_field_that_the_robot_file_names_has_to_be_there(robot: Path) -> None:
 
     with pytest.raises(UnknownFieldError, match="has no field no_such_field; it has data"):
         composed(ServeOptions(robot=robot, backend="ros2"))
+
+
+@pytest.mark.usefixtures("_ros")
+def test_goals_go_to_the_controller_that_the_robot_file_names(robot: Path) -> None:
+    robot.write_text("ros2: {navigation: {action: /go}}\n")
+    composition = composed(ServeOptions(robot=robot, backend="ros2"))
+
+    assert composition.supervisor.navigation is not None
+    composition.supervisor.let_pass()
+    assert "navigation" in composition.supervisor.core.driving.holds
 
 
 def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
@@ -316,8 +334,8 @@ def test_the_supervisor_runs_the_whole_robot_and_simulates_what_no_device_owns(
 def test_a_device_that_the_robot_file_does_not_have_is_refused(robot: Path) -> None:
     robot.write_text(DEVICES)
 
-    with pytest.raises(MisuseError, match="leg"):
-        read_files(ServeOptions(robot=robot, device="leg"))
+    with pytest.raises(MisuseError, match=r"no device 'arn'; known: arm"):
+        read_files(ServeOptions(robot=robot, device="arn"))
 
 
 def test_a_robot_of_one_computer_has_no_link(robot: Path) -> None:
@@ -325,3 +343,31 @@ def test_a_robot_of_one_computer_has_no_link(robot: Path) -> None:
 
     assert composition.supervisor.link is None
     assert composition.place is None
+
+
+PROCESS = "nodes: {drive_base: {process: {command: [base]}}}\n"
+
+
+def test_programs_of_simulated_nodes_are_not_run_and_that_is_told(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text(PROCESS)
+
+    assert composed(ServeOptions(robot=robot)).supervisor.processes is None
+    assert "`process` of the robot file has no effect" in caplog.text
+
+
+@pytest.mark.usefixtures("_ros")
+def test_programs_of_real_nodes_are_run(robot: Path) -> None:
+    robot.write_text(PROCESS)
+
+    assert composed(ServeOptions(robot=robot, backend="ros2")).supervisor.processes is not None
+    robot.write_text("nodes: {drive_base: {}}\n")
+    assert composed(ServeOptions(robot=robot, backend="ros2")).supervisor.processes is None
+
+
+def test_what_is_simulated_can_be_given_faults() -> None:
+    faults = composed(ServeOptions()).supervisor.live_faults
+
+    assert faults is not None
+    assert set(faults.node_faults) == {"drive_base", "manipulator"}

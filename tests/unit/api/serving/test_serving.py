@@ -1,5 +1,6 @@
 import os
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -47,6 +48,19 @@ def test_the_greeting_of_a_real_robot_says_so(
     assert "Nothing here moves" not in told
 
 
+def test_the_greeting_says_which_programs_end_with_the_service(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock()))
+    monkeypatch.setitem(sys.modules, "service.ros.graph.link", link)
+    file = tmp_path / "robot.yaml"
+    file.write_text("nodes: {drive_base: {process: {command: [base]}}}\n")
+
+    told = greeting(ServeOptions(backend="ros2", robot=file))
+
+    assert "programs that it runs end with it, and other nodes stay as they are." in told
+
+
 def test_without_ros_2_the_service_ends_with_what_to_do_about_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -55,6 +69,12 @@ def test_without_ros_2_the_service_ends_with_what_to_do_about_it(
     assert serve(ServeOptions(backend="ros2", port=0)) == 2
 
     assert "setup.bash" in capsys.readouterr().err
+
+
+def test_the_greeting_says_where_clients_of_rosbridge_connect() -> None:
+    address = URL.replace("http://", "ws://")
+
+    assert f"  ros   {address}/rosbridge " in greeting(ServeOptions())
 
 
 def test_the_greeting_of_a_service_with_a_token_shows_how_to_send_it_and_not_the_token() -> None:

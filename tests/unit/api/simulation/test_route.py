@@ -8,6 +8,7 @@ from api.simulation import route
 from domain.simulation.node_settings import Fault
 from service.worker import WorkerBusyError
 from tests.support.http_robot import HttpRobot
+from tests.support.robot_with_devices import device_robot
 from tests.support.scenarios import ALL_GOOD, NEVER_STALE, STRAIGHT
 
 VISIBLE = (
@@ -195,3 +196,13 @@ async def test_an_answer_about_thousands_of_faults_is_short(robot: HttpRobot) ->
     assert answer.status_code == 422
     assert len(answer.json()["errors"]) <= 20
     assert len(answer.content) < 10_000
+
+
+async def test_a_robot_of_several_computers_is_not_copied_and_says_so() -> None:
+    async with device_robot() as (robot, _):
+        robot.app.state.simulated = None  # Its nodes are on other computers.
+        answer = await robot.http.post("/simulations", json={"from": "live", "until_s": 1})
+
+    (fault,) = answer.json()["errors"]
+    assert (answer.status_code, fault["pointer"]) == (422, "/from")
+    assert "has several computers" in fault["message"]

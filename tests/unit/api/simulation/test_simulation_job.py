@@ -6,10 +6,11 @@ from typing import Any
 import pytest
 
 from api.http.body_parsing import InvalidBodyError, MalformedBodyError
-from api.simulation.simulation_job import LiveCopy, copy_of, robot_for, simulate_posted
+from api.simulation.simulation_job import HAS_DEVICES, LiveCopy, copy_of, robot_for, simulate_posted
 from domain.actor import Actor
 from domain.errors import InvalidModelError
 from domain.inputs import HoldRequest
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.simulation.virtual_time import VirtualService
 from tests.support.http_robot import ACTUATION
@@ -134,6 +135,22 @@ def test_a_copy_that_cannot_be_had_is_refused() -> None:
 
     with pytest.raises(InvalidBodyError, match="only a simulated one can be copied"):
         robot_for(body, ACTUATION, None)
+
+
+def test_why_a_robot_of_several_computers_cannot_be_copied_is_told() -> None:
+    with pytest.raises(InvalidBodyError, match="has several computers"):
+        robot_for(scenario(begin="live"), ACTUATION, None, HAS_DEVICES)
+
+
+def test_a_robot_of_several_computers_is_simulated_as_on_one() -> None:
+    body = scenario(robot={"devices": {"arm": {"parts": ["manipulator"]}}})
+
+    robot = robot_for(body, ACTUATION, None)
+    robot.advance_to(seconds(5))
+
+    assert robot.onboard.core.devices() == {}
+    part = robot.onboard.core.part(PartName("manipulator"))
+    assert (part.device, part.reachable) == (None, True)
 
 
 def test_a_copy_goes_on_from_the_live_robot_in_time_events_and_state(live: VirtualService) -> None:

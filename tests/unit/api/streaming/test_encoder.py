@@ -56,6 +56,7 @@ def test_the_first_frame_says_what_to_expect(
         "epoch": supervisor.epoch,
         "boot": 1,
         "started_at": "2026-01-01T00:00:00.000Z",
+        "model": "",
         "newest": 0,
         "topics": ["parts", "signals"],
         "period_s": 0.05,

@@ -2,14 +2,23 @@
 
 import pytest
 
-from domain.commands import AskTransition
+from domain.commands import AskTransition, NodeCommand
 from domain.computers import DeviceState
+from domain.devices.settings import DeviceSettings
 from domain.inputs import ModeRequest
 from domain.lifecycle import LifecycleState
+from domain.parts.mode_settings import OnFailure
 from domain.snapshot import ChangeStatus, ChangeView, StepStatus
-from domain.state_and_mode import ModeName, StateAndMode
+from domain.state_and_mode import ModeName, PartName, StateAndMode
+from domain.supervision import SupervisionSettings
 from tests.support.models import ACTUATION, ARM
-from tests.support.robot_of_devices import ARM_COMPUTER, SILENT, RobotOfDevices
+from tests.support.ordered_model import ROBOT, ordered_model
+from tests.support.robot_of_devices import (
+    ARM_COMPUTER,
+    BASE_COMPUTER,
+    SILENT,
+    RobotOfDevices,
+)
 
 
 @pytest.fixture
@@ -86,3 +95,63 @@ def test_what_is_requested_while_a_device_is_lost_waits_for_its_return(
 
     robot.connect(ARM_COMPUTER, "unconfigured", run=2)
     assert len(asked_of_arm(robot)) == 1
+
+
+# --- a node that waits for others ----------------------------------------------------------------
+
+
+def in_order(on_failure: OnFailure) -> RobotOfDevices:
+    """Three nodes in a row are requested to be active; the second is on the arm."""
+    first, second, third = (PartName(name) for name in ("n1", "n2", "n3"))
+    model = ordered_model({"n2": ["n1"], "n3": ["n2"]}, on_failure, parts=(first, second, third))
+    devices = {
+        BASE_COMPUTER: DeviceSettings(BASE_COMPUTER, (first, third)),
+        ARM_COMPUTER: DeviceSettings(ARM_COMPUTER, (second,)),
+    }
+    settings = SupervisionSettings(devices=devices, peers=tuple(devices))
+    robot = RobotOfDevices(model, settings).connect_all("inactive")
+    robot.give(ModeRequest(ROBOT, "FAST"))
+    return robot
+
+
+def asked(robot: RobotOfDevices) -> set[PartName]:
+    return {each.node for each in robot.commands if isinstance(each, NodeCommand)}
+
+
+def test_a_node_whose_turn_had_not_come_ends_with_its_device() -> None:
+    robot = in_order(OnFailure.STOP)
+
+    robot.lose()
+
+    failed = [step for step in change(robot).steps if step.status is StepStatus.FAILED]
+    assert [(step.node, step.error) for step in failed] == [
+        ("n2", f"n2: the node is unreachable: {SILENT}, its last values are old")
+    ]
+    assert change(robot).status is ChangeStatus.RUNNING, "a step of n1 is in flight"
+    robot.obey()
+    assert change(robot).status is ChangeStatus.FAILED
+    assert change(robot).reason == failed[0].error
+
+
+def test_the_others_go_on_in_their_order_without_it() -> None:
+    robot = in_order(OnFailure.CONTINUE)
+
+    robot.lose()
+    assert asked(robot) == {"n1"}, "n3 still waits for n1"
+    robot.obey().advance(0.1)
+    assert asked(robot) == {"n3"}
+    robot.obey()
+
+    states = {node: str(robot.core.part(PartName(node)).actual.state) for node in ("n1", "n3")}
+    assert states == {"n1": "active", "n3": "active"}
+    assert change(robot).status is ChangeStatus.FAILED
+
+
+def test_it_does_not_begin_either_when_its_device_is_back() -> None:
+    robot = in_order(OnFailure.CONTINUE)
+    robot.lose()
+    robot.connect(ARM_COMPUTER, "inactive", run=2)
+    robot.obey().advance(20.0)
+    assert asked(robot) == {"n3"}
+
+    assert str(robot.core.part(PartName("n2")).actual.state) == "inactive"

@@ -5,6 +5,7 @@ import pytest
 from domain.actor import Actor
 from domain.commands import ActAlone, AnswerOrder, AskFacts, AskTransition, TellReaction
 from domain.computers import DeviceState
+from domain.devices.lead import ORDER_WAITS
 from domain.devices.lead_view import Word
 from domain.devices.settings import OfflineSettings
 from domain.errors import OfflineError, OwnedBySupervisorError, PilothouseError
@@ -26,7 +27,7 @@ from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, SystemState
 from domain.state_and_mode import StateAndMode
-from domain.timebase import seconds
+from domain.timebase import seconds, to_seconds
 from service.checkpoint import checkpoint_of, core_of_checkpoint
 from service.files.model_file import read_model
 from tests.support.core_robot import CoreRobot
@@ -281,7 +282,7 @@ def test_somebody_at_the_device_brings_it_to_rest() -> None:
     assert robot.actual("drive_base") == "inactive"
 
 
-def test_an_order_waits_until_what_was_requested_at_the_device_is_done() -> None:
+def test_an_order_to_activate_is_refused_while_the_node_does_what_was_requested_here() -> None:
     robot = following()
     robot.activate()
     robot.ask_transition("drive_base", "deactivate")
@@ -292,6 +293,74 @@ def test_an_order_waits_until_what_was_requested_at_the_device_is_done() -> None
         False,
         "drive_base is busy on request of the device: deactivate",
     )
+
+
+def test_an_order_towards_rest_waits_until_what_was_requested_here_is_done() -> None:
+    robot = following()
+    robot.activate()
+    robot.ask_transition("drive_base", "deactivate")
+
+    request = robot.order("drive_base", "cleanup")
+    assert robot.answers_to(request) == [], "it waits"
+    robot.advance(2)
+
+    assert robot.answer_to(request).accepted
+    assert robot.actual("drive_base") == "unconfigured"
+
+
+def test_an_order_that_is_done_when_its_turn_comes_is_not_given_to_the_node() -> None:
+    robot = following()
+    robot.activate()
+    robot.ask_transition("drive_base", "deactivate")
+
+    request = robot.order("drive_base", "deactivate")
+    robot.advance(2)
+
+    assert robot.answer_to(request).accepted
+    asked = [each for each in robot.commands if isinstance(each, AskTransition)]
+    assert [each.transition for each in asked].count(Transition.DEACTIVATE) == 1
+
+
+def test_an_order_does_not_wait_for_ever() -> None:
+    robot = following()
+    robot.activate()
+    robot.robot.nodes.set_fault(BASE, Fault.SILENT, robot.now)
+    robot.ask_transition("drive_base", "deactivate")
+
+    request = robot.order("drive_base", "deactivate")
+    robot.advance(to_seconds(ORDER_WAITS) - 0.1)
+    assert robot.answers_to(request) == []
+    robot.advance(0.2)
+
+    assert robot.answer_to(request).reason == (
+        "drive_base is busy on request of the device: deactivate"
+    )
+
+
+def test_an_order_that_waits_is_void_once_the_supervisor_is_lost() -> None:
+    robot = following()
+    robot.activate()
+    robot.ask_transition("drive_base", "deactivate")
+    request = robot.order("drive_base", "cleanup")
+
+    robot.lose()
+    robot.advance(2)
+
+    assert robot.answers_to(request) == []
+    assert robot.actual("drive_base") == "inactive"
+
+
+def test_of_two_orders_that_wait_for_a_node_the_later_one_is_carried_out() -> None:
+    robot = following()
+    robot.activate()
+    robot.ask_transition("drive_base", "deactivate")
+    first = robot.order("drive_base", "deactivate")
+
+    second = robot.order("drive_base", "cleanup")
+    robot.advance(2)
+
+    assert robot.answers_to(first) == []
+    assert robot.answer_to(second).accepted
 
 
 def test_a_later_order_replaces_what_was_requested_at_the_device() -> None:

@@ -203,3 +203,35 @@ def test_a_device_has_the_errors_of_devices() -> None:
 )
 def test_a_lost_device_is_urgent_and_a_late_one_is_not(error: str, severity: str) -> None:
     assert with_device().severity_of(ErrorKey(ARM, error)) == severity
+
+
+def with_process(**errors: dict[str, DeclaredError]) -> ErrorCauses:
+    """Return the graph of a robot whose lidar has a process that runs here."""
+    nodes = {name: NodeModel(name) for name in (LIDAR, CAMERA)}
+    declared = {PartName(part): own for part, own in errors.items()}
+    return ErrorCauses(SmhModel(nodes, {}, errors=declared), with_processes={LIDAR})
+
+
+@pytest.mark.parametrize("error", ["PROCESS_ENDED", "PROCESS_GIVEN_UP"])
+def test_a_node_is_unreachable_because_its_process_ended(error: str) -> None:
+    graph, ended = with_process(), ErrorKey(LIDAR, error)
+
+    assert present(graph, LOST, ended) == [f"lidar.{error}"]
+    assert list(graph.effects(ended, {ended, LOST}.__contains__)) == [LOST]
+    assert list(graph.effects(ended, {ended}.__contains__)) == []
+    assert graph.place(ended) < graph.place(LOST)
+
+
+def test_what_the_file_says_of_an_unreachable_node_counts_beside_its_process() -> None:
+    graph = with_process(lidar={"UNREACHABLE": DeclaredError(severity=Severity.WARNING)})
+    ended = ErrorKey(LIDAR, "PROCESS_ENDED")
+
+    assert present(graph, LOST, ended) == ["lidar.PROCESS_ENDED"]
+    assert list(graph.effects(ended, {ended, LOST}.__contains__)) == [LOST]
+
+
+def test_only_a_node_whose_process_runs_here_has_its_errors() -> None:
+    graph = with_process()
+
+    assert "PROCESS_ENDED" in graph.names_of(LIDAR)
+    assert "PROCESS_ENDED" not in graph.names_of(CAMERA)

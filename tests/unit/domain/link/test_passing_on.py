@@ -1,6 +1,7 @@
 """Two devices that do not hear each other learn of stops through the supervisor."""
 
-from domain.computers import SUPERVISOR
+from domain.commands import AskRelease
+from domain.computers import SUPERVISOR, StopId
 from domain.link.messages import Beat
 from domain.link.passing_on import EVERY
 from domain.timebase import to_seconds
@@ -48,7 +49,7 @@ def test_a_beat_that_is_lost_is_made_up_for_a_second_later() -> None:
     assert robot.devices[ARM].stops_of(BASE) == {"b1"}
 
 
-def test_the_stop_of_a_process_that_was_replaced_ends_everywhere() -> None:
+def test_the_stop_of_a_process_that_was_replaced_is_released_everywhere() -> None:
     robot = robot_of_devices_apart()
     robot.engage(robot.base, "b1")
     robot.run(1)
@@ -57,6 +58,9 @@ def test_the_stop_of_a_process_that_was_replaced_ends_everywhere() -> None:
     assert robot.devices[ARM].stops_of(BASE) == {"b1"}
 
     robot.devices[BASE] = robot.start(BASE)
+    robot.run(3)
+    assert robot.devices[ARM].stops_of(BASE) == {"b1"}, "it may live, behind a broken cable"
+    robot.tell(robot.supervisor, AskRelease(BASE, (StopId("b1"),)))
     robot.run(3)
 
     assert robot.supervisor.stops_of(BASE) == set()

@@ -180,35 +180,68 @@ def test_a_stop_that_the_store_brought_back_is_the_same_one() -> None:
     assert released(again) == [StopsReleased((StopId("b1"),), SUPERVISOR)]
 
 
-def test_a_stop_that_the_store_lost_ends_once_the_new_process_is_dealt_with() -> None:
+def test_a_stop_that_the_store_brought_back_ends_at_the_new_process_for_all() -> None:
+    robot = connected()
+    robot.engage(robot.base, "b1")
+    robot.run(0.1)
+    robot.kill(robot.base)
+    again = robot.start(BASE)
+    robot.engage(again, "b1")
+    robot.run(5)
+    robot.engage(again)
+    robot.run(1)
+
+    assert robot.supervisor.stops_of(BASE) == set()
+    assert robot.devices[ARM].stops_of(BASE) == set()
+
+
+def test_a_stop_that_the_store_lost_stays_until_a_person_names_it() -> None:
     robot = connected()
     robot.engage(robot.base, "b1")
     robot.run(0.1)
     robot.kill(robot.base)
     robot.run(0.2)
     robot.start(BASE)
-    robot.run(1)
-    before = robot.supervisor.stops_of(BASE)
-    robot.run(4)
+    robot.run(5)
+    before = robot.supervisor.stops_of(BASE), robot.devices[ARM].stops_of(BASE)
 
-    assert before == {"b1"}
+    ask(robot, robot.supervisor, BASE, "b1")
+    robot.run(2)
+
+    assert before == ({"b1"}, {"b1"})
     assert robot.supervisor.stops_of(BASE) == set()
     assert robot.devices[ARM].stops_of(BASE) == set()
 
 
-def test_a_stop_of_a_process_that_crashed_at_once_ends_with_the_next_one() -> None:
+def test_a_stop_of_the_supervisor_that_its_store_lost_ends_once_it_is_dealt_with() -> None:
     robot = connected()
-    robot.kill(robot.base)
-    crashed = robot.start(BASE)
-    robot.engage(crashed, "b1")
+    robot.engage(robot.supervisor, "s1")
     robot.run(0.1)
-    robot.kill(crashed)
-    robot.start(BASE)
-    robot.run(1)
-    before = robot.supervisor.stops_of(BASE)
-    robot.run(4)
+    robot.kill(robot.supervisor)
+    robot.run(0.2)
+    robot.start(SUPERVISOR)
+    robot.run(5)
 
-    assert before == {"b1"}
+    assert robot.base.stops_of(SUPERVISOR) == set()
+
+
+def test_the_stop_of_a_device_that_is_hidden_stays_when_another_process_takes_its_name() -> None:
+    robot = connected()
+    hidden = robot.base
+    robot.engage(hidden, "b1")
+    robot.run(0.1)
+    robot.hide(hidden)
+    robot.run(3)
+    robot.start(BASE)
+    robot.run(5)
+    assert robot.supervisor.stops_of(BASE) == {"b1"}
+    assert robot.devices[ARM].stops_of(BASE) == {"b1"}
+
+    robot.show(hidden)
+    robot.run(3)
+    assert robot.supervisor.stops_of(BASE) == {"b1"}
+    robot.engage(hidden)
+    robot.run(1)
     assert robot.supervisor.stops_of(BASE) == set()
     assert robot.devices[ARM].stops_of(BASE) == set()
 

@@ -7,6 +7,7 @@ from domain.lifecycle import LifecycleState
 from domain.link.gathering import Gathering
 from domain.link.messages import Beat, NodeOrder, Report
 from domain.link.peer import Own, Peer, Said
+from domain.link.pieces import cut
 from domain.link.remote_device import RemoteDevice
 from domain.link.settings import LinkSettings, Owned
 from domain.link.stops import OwnStops
@@ -83,6 +84,18 @@ def test_it_is_connected_once_it_told_everything() -> None:
             BASE, DeviceState.CONNECTED, incarnation=IT, session=FIRST, version=TERMS.version
         ),
     ]
+
+
+def test_a_report_in_pieces_connects_it_with_the_last_piece() -> None:
+    heard = Heard()
+    heard.beat()
+    first, last = cut(Report(BASE, IT, 1, (ACTIVE, ACTIVE), complete=True, session=FIRST), 2)
+
+    heard.device.take_report(first, heard.now, heard.gathering)
+    half = heard.device.is_connected
+    heard.device.take_report(last, heard.now, heard.gathering)
+
+    assert (half, heard.device.is_connected) == (False, True)
 
 
 def test_it_is_told_which_session_commands_carry_only_while_it_is_connected() -> None:

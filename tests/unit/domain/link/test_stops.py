@@ -185,3 +185,13 @@ def test_an_impostor_without_a_stop_is_not_remembered() -> None:
     listener.hears(X, 1)
 
     assert listener.stops.processes() == ()
+
+
+def test_a_computer_that_starts_again_and_again_with_a_stop_leaves_a_bounded_number() -> None:
+    heard = HeardStops()
+    for number in range(30):
+        process = Incarnation(f"p{number}")
+        stop = engaged(f"s{number}")
+        heard.take(process, 1, stop, number, lives=True, is_dealt_with=True)
+
+    assert heard.ids == {f"s{number}" for number in range(21, 30)}

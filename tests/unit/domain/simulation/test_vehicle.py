@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from domain.inputs import VehicleReport
 from domain.simulation.vehicle import SimulatedVehicle
-from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
+from domain.simulation.vehicle_settings import Noise, Plant, VehicleFault, VehicleSettings
 from domain.timebase import Instant, seconds, to_seconds
 from domain.vehicle import COMMAND_VALID_FOR, DriveCommand, Pose, VehicleLimits
 
@@ -92,6 +92,53 @@ def test_a_vehicle_whose_localization_is_lost_moves_all_the_same() -> None:
     driven(it, DriveCommand(2.0, 0.0), 0.0, 1.0)
 
     assert it.state.pose.x_m == pytest.approx(2.0)
+
+
+# --- faults --------------------------------------------------------------------------------------
+
+
+def test_a_vehicle_with_a_fault_reports_nothing_until_it_recovers() -> None:
+    it = vehicle()
+    it.advance(START)
+    it.set_fault(VehicleFault.SILENT, at(0.01))
+
+    assert it.advance(at(1.0)) == ()
+
+    it.set_fault(None, at(1.01))
+    assert len(it.advance(at(1.05))) == 1
+
+
+def test_weak_brakes_stop_it_late_and_accelerate_as_before() -> None:
+    it = vehicle()
+    it.set_fault(VehicleFault.WEAK_BRAKES, START)
+    driven(it, DriveCommand(3.0, 0.0), 0.0, 0.1)
+    assert it.state.speed_mps == 3.0
+
+    driven(it, DriveCommand(0.0, 0.0), 0.1, 5.1)
+
+    assert it.state.speed_mps == pytest.approx(3.0 - 5 * 0.3, abs=0.02)
+
+
+def test_brakes_that_are_weaker_than_weak_stay_so() -> None:
+    it = vehicle(Plant(braking_mps2=0.1))
+    it.set_fault(VehicleFault.WEAK_BRAKES, START)
+    driven(it, DriveCommand(3.0, 0.0), 0.0, 0.1)
+    driven(it, DriveCommand(0.0, 0.0), 0.1, 5.1)
+
+    assert it.state.speed_mps == pytest.approx(3.0 - 5 * 0.1, abs=0.02)
+
+
+def test_brakes_that_recover_do_at_once_what_is_commanded() -> None:
+    it = vehicle()
+    it.set_fault(VehicleFault.WEAK_BRAKES, START)
+    driven(it, DriveCommand(3.0, 0.0), 0.0, 0.1)
+    driven(it, DriveCommand(0.0, 0.0), 0.1, 1.0)
+    assert it.fault is VehicleFault.WEAK_BRAKES
+
+    it.set_fault(None, at(1.0))
+
+    assert it.state.speed_mps == 0.0
+    assert it.fault is None
 
 
 # --- an ideal vehicle ----------------------------------------------------------------------------

@@ -5,6 +5,7 @@ import pytest
 
 from domain.actor import SERVICE
 from domain.computers import ComputerName
+from domain.controller import NavigationStatus
 from domain.devices.settings import LeadSettings
 from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
 from domain.identifiers import TaskId
@@ -87,7 +88,7 @@ def test_a_vehicle_that_is_lost_is_not_known_to_stand(robot: ScriptedRobot) -> N
     assert robot.task.status is TaskPhase.PAUSING
 
 
-@pytest.mark.parametrize("owner", ["error", "vehicle", "drive_process"])
+@pytest.mark.parametrize("owner", ["error", "vehicle", "drive_process", "navigation"])
 def test_nobody_else_sets_or_clears_the_holds_of_pilothouse(
     robot: ScriptedRobot, owner: str
 ) -> None:
@@ -273,6 +274,22 @@ def test_it_is_driven_on_once_it_can_be_commanded_again(robot: ScriptedRobot) ->
 
     assert robot.task.status is TaskPhase.RUNNING
     assert robot.happened("hold.released") == [{"owner": "drive_process"}]
+
+
+def test_a_task_is_held_while_its_controller_is_given_no_goals(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.give(NavigationStatus(available=False, reason="the controller is gone"))
+    assert robot.core.driving.holds == {
+        "navigation": HoldView("navigation", "the controller is gone", "", robot.now)
+    }
+    (held,) = (event for event in robot.events if event.kind == "hold.set")
+    (told,) = (event for event in robot.events if event.kind == "navigation.unavailable")
+    assert held.cause == told.id
+    assert told.event.words == ("the external controller is given no goals: the controller is gone")
+
+    robot.give(NavigationStatus(available=True))
+    assert robot.task.status is TaskPhase.RUNNING
+    assert robot.happened("hold.released") == [{"owner": "navigation"}]
 
 
 def test_that_a_vehicle_can_be_commanded_is_no_news(robot: ScriptedRobot) -> None:

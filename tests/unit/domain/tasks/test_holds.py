@@ -36,7 +36,7 @@ def test_releasing_what_is_not_held_changes_nothing() -> None:
     assert holds
 
 
-@pytest.mark.parametrize("owner", ["error", "vehicle", "drive_process"])
+@pytest.mark.parametrize("owner", ["error", "vehicle", "drive_process", "navigation"])
 def test_the_names_of_pilothouse_are_reserved(owner: str) -> None:
     with pytest.raises(ReservedHoldError, match=owner):
         Holds().check_set(owner)

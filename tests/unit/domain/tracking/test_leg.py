@@ -4,7 +4,8 @@ import pytest
 
 from domain.paths.path import Path
 from domain.timebase import Instant, seconds
-from domain.tracking.leg import GivenUpError, Leg, LegLimits
+from domain.tracking.leg import Leg
+from domain.tracking.line_watch import GivenUpError, LegLimits
 from domain.tracking.tracker import ControlStep
 from domain.vehicle import Point, Pose, VehicleState
 from tests.support.paths import straight

@@ -3,7 +3,8 @@ import math
 import pytest
 
 from domain.timebase import seconds
-from domain.tracking.leg import GivenUpError, Leg
+from domain.tracking.leg import Leg
+from domain.tracking.line_watch import GivenUpError
 from domain.tracking.slow_down import SlowDown, is_slow
 from domain.tracking.stanley import Stanley
 from domain.vehicle import Pose, VehicleLimits, VehicleState

@@ -14,11 +14,17 @@ from domain.actor import Actor
 from domain.events.event import Event, RecordedEvent
 from service.codec.codec import EVENTS, Codec
 from service.codec.names import NAMES
-from tests.support.record_samples import events, inputs, messages, others
+from tests.support.record_samples import events, inputs, messages, others, process_samples
 from tests.support.records import RECORDS, is_same
 
 FOLDER = Path(__file__).parents[3] / "data" / "codec" / "v1"
-SAMPLES = {**inputs.INPUTS, **events.EVENTS, **messages.MESSAGES, **others.OTHERS}
+SAMPLES = {
+    **inputs.INPUTS,
+    **events.EVENTS,
+    **messages.MESSAGES,
+    **others.OTHERS,
+    **process_samples.PROCESSES,
+}
 CODECS: dict[str, Codec[Any]] = {NAMES[kind]: codec for kind, codec in RECORDS}
 
 

@@ -33,6 +33,7 @@ ros2:
   signals: {load: {topic: /load, type: std_msgs/msg/Float64}}
   odometry: {topic: /odom}
 start_task: {file: path.csv}
+tasks: {folder: tracks}
 link: {lost_s: 2}
 devices:
   base:
@@ -84,6 +85,7 @@ def test_a_device_has_no_vehicle_and_no_task() -> None:
     robot = share("base").robot
 
     assert robot.start_task is None
+    assert robot.tasks is None
     assert robot.ros2.odometry is None
 
 

@@ -6,7 +6,7 @@ from domain.paths.speed_profile import SpeedLimits
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.tracking.trackers import TRACKERS
-from service.files.driving_block import DrivingBlock, StartTaskBlock
+from service.files.driving_block import DrivingBlock, StartTaskBlock, TasksBlock
 
 
 def test_driving_of_which_nothing_is_said_is_as_usual() -> None:
@@ -64,6 +64,14 @@ def test_a_path_may_be_lost_at_once() -> None:
 @pytest.mark.parametrize("key", sorted(DrivingBlock.model_fields))
 def test_a_whole_number_is_as_good_as_another(key: str) -> None:
     assert getattr(DrivingBlock.model_validate({key: 1}), key) == 1.0
+
+
+def test_tasks_by_name_need_a_folder() -> None:
+    assert TasksBlock(folder="tracks").folder == "tracks"
+
+    for settings in ({}, {"folder": ""}, {"folder": "a", "file": "b"}):
+        with pytest.raises(ValidationError):
+            TasksBlock.model_validate(settings)
 
 
 def test_a_start_task_needs_a_file_and_nothing_else() -> None:

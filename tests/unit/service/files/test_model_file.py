@@ -83,7 +83,7 @@ def test_the_example_robot_is_that_of_d48_and_nothing_is_odd_about_it() -> None:
     loaded = load_model(EXAMPLE)
 
     assert loaded.warnings == ()
-    assert loaded.text == ROBOT
+    assert (loaded.text, loaded.name) == (ROBOT, "actuation.yaml")
     assert loaded.model.parts == ("actuation", "drive_base", "manipulator")
     (system,) = loaded.model.systems.values()
     assert {m: {p: w.label for p, w in ws.items()} for m, ws in system.modes.items()} == {

@@ -22,6 +22,7 @@ from service.files.robot_file import (
     RobotSettings,
     read_robot_file,
     robot_settings_of,
+    written_with_backend,
 )
 from service.files.text_file import read_text_file
 from service.files.vehicle_block import PlantBlock, PoseBlock
@@ -115,6 +116,7 @@ start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
         ("gem_e2", PROJECT / "examples" / "models" / "gem_e2.yaml"),
         ("actuation_with_faults", PROJECT / "service" / "example" / "actuation.yaml"),
         ("ros2_robot", PROJECT / "service" / "example" / "actuation.yaml"),
+        ("ros2_tracker", PROJECT / "service" / "example" / "actuation.yaml"),
         ("watched_computer", PROJECT / "service" / "example" / "actuation.yaml"),
     ],
 )
@@ -129,7 +131,16 @@ def test_the_robots_among_the_examples_load(robot: str, model: Path) -> None:
 def test_no_robot_among_the_examples_is_forgotten() -> None:
     robots = sorted(path.stem for path in EXAMPLES.iterdir())
 
-    assert robots == ["actuation_with_faults", "gem_e2", "ros2_robot", "watched_computer"]
+    known = ["actuation_with_faults", "gem_e2", "ros2_robot", "ros2_tracker", "watched_computer"]
+    assert robots == known
+
+
+def test_the_example_with_a_tracker_names_the_action_that_it_offers() -> None:
+    settings = read_robot_file(read_text_file(EXAMPLES / "ros2_tracker.yaml"), MODEL)
+
+    navigation = settings.ros2.navigation
+    assert navigation is not None
+    assert navigation.action == "/navigate_waypoints"
 
 
 @pytest.mark.parametrize(
@@ -326,3 +337,22 @@ def test_limits_are_set_in_a_robot_file_and_do_no_harm_in_a_simulation() -> None
     assert robot_settings_of({"limits": limits}, MODEL).limits.requests_per_s == 5
     assert faults("limits:\n  json_bytes: 1\n") == [(2, 3, "INVALID_VALUE")]
     assert faults("limits:\n  bytes: 1\n") == [(2, 3, "UNKNOWN_KEY")]
+
+
+def test_in_a_simulation_the_trackers_on_board_drive() -> None:
+    said = {"backend": "ros2", "ros2": {"navigation": {"action": "/go"}}}
+
+    assert robot_settings_of(said, MODEL).to_controller_settings() is None
+    text = "backend: ros2\nros2: {navigation: {action: /go}}\n"
+    controller = read_robot_file(text, MODEL).to_controller_settings()
+    assert controller is not None
+    assert controller.name == "/go"
+
+
+def test_a_backend_that_the_command_named_is_in_the_file_that_a_log_keeps() -> None:
+    text = "backend: ros2\nros2: {navigation: {action: /go}}\n"
+    written = written_with_backend(text, "simulated")
+
+    kept = read_robot_file(written, MODEL)
+    assert (kept.backend, kept.to_controller_settings()) == ("simulated", None)
+    assert kept.ros2 == read_robot_file(text, MODEL).ros2

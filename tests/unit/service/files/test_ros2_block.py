@@ -4,6 +4,7 @@ import pytest
 from pydantic import ValidationError
 
 from domain.errors import InvalidValueError
+from domain.timebase import seconds
 from service.files.model_file import read_model
 from service.files.robot_file import InvalidRobotFileError, read_robot_file, robot_settings_of
 from service.files.ros2_block import Ros2Block, SignalTopicBlock, StatisticBlock
@@ -27,6 +28,14 @@ def test_a_robot_of_which_nothing_is_said_has_no_topics() -> None:
     block = read_robot_file("backend: ros2\n", MODEL).ros2
 
     assert (block.signals, block.odometry, block.command) == ({}, None, None)
+
+
+def test_messages_are_our_own_unless_the_file_names_those_of_smart_polaris() -> None:
+    assert read_robot_file("", MODEL).ros2.messages == "pilothouse_msgs"
+    given = read_robot_file("ros2: {messages: gem_state_msgs}\n", MODEL)
+    assert given.ros2.messages == "gem_state_msgs"
+
+    assert faults("ros2: {messages: my_msgs}\n") == [(1, 8, "INVALID_VALUE")]
 
 
 def test_topics_of_signals_vehicle_and_commands_hold() -> None:
@@ -278,3 +287,28 @@ def test_an_age_has_no_window() -> None:
         StatisticBlock.model_validate(
             {"topic": "/t", "type": FLOAT, "statistic": "age", "window_s": 1}
         )
+
+
+def test_an_external_controller_has_an_action_and_deadlines() -> None:
+    block = read_robot_file("ros2: {navigation: {action: /go, silent_for_s: 0.5}}\n", MODEL).ros2
+    assert block.navigation is not None
+    assert block.navigation.type == "pilothouse_msgs/action/NavigateWaypoints"
+    settings = block.navigation.to_settings()
+    assert (settings.name, settings.silent_for) == ("/go", seconds(0.5))
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "{}",
+        "{action: go}",
+        "{action: /go, type: my_msgs/action/Go}",
+        "{action: /go, silent_for_s: 0}",
+        "{action: /go, taken_back_within_s: .inf}",
+        "{action: /go, claim_tolerance_m: -1}",
+        "{action: /go, deadline_s: 1}",
+    ],
+)
+def test_a_controller_that_cannot_be_used_is_complained_of(said: str) -> None:
+    with pytest.raises(InvalidRobotFileError):
+        read_robot_file(f"ros2: {{navigation: {said}}}\n", MODEL)

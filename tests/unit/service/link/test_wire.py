@@ -1,5 +1,6 @@
 import tracemalloc
 import zlib
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -9,11 +10,12 @@ from domain.computers import ComputerName, Incarnation
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.link.messages import Message, Report
+from domain.link.pieces import Pieces
 from domain.state_and_mode import PartName
 from service.codec.codec import MAX_MESSAGE_BYTES
 from service.codec.errors import CodecError
 from service.link import port
-from service.link.wire import PACKED_FROM, decode, encode
+from service.link.wire import PACKED_FROM, decode, encode, encode_in_pieces
 from tests.support.record_samples.messages import MESSAGES
 
 SAMPLES = [message for messages in MESSAGES.values() for message in messages]
@@ -54,6 +56,32 @@ def test_a_long_report_is_packed() -> None:
 def test_a_message_that_nobody_would_read_is_not_written() -> None:
     with pytest.raises(CodecError, match="at most 1048576 bytes"):
         encode(report_of(20_000))
+
+
+def test_a_report_that_is_too_long_goes_in_pieces_and_is_whole_again() -> None:
+    report = report_of(20_000)
+
+    messages = encode_in_pieces(report)
+    pieces = [decode(data) for data in messages]
+
+    assert len(messages) == 2
+    together = Pieces()
+    assert [together.add(piece) for piece in pieces if isinstance(piece, Report)] == [
+        None,
+        replace(report, complete_together=True),
+    ]
+
+
+def test_what_fits_goes_as_one() -> None:
+    assert encode_in_pieces(report_of(1)) == [encode(report_of(1))]
+
+
+def test_a_report_that_is_too_long_even_in_pieces_is_not_written() -> None:
+    node = NodeReport(PartName("x" * 2**20), reachable=True)
+    report = replace(report_of(1), items=(node, node))
+
+    with pytest.raises(CodecError, match="at most 1048576 bytes"):
+        encode_in_pieces(report)
 
 
 def test_what_the_port_carries_is_what_can_be_read() -> None:

@@ -12,6 +12,8 @@ from domain.state_and_mode import DEFAULT_MODE, PartName
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import Fields, Lane, Qos
 from service.ros.interface.endpoints import OfferedTopic
+from service.ros.interface.message_sets import MessageSet
+from service.ros.interface.settings import USUAL_SETTINGS, InterfaceSettings
 from tests.support.live_robot import running
 from tests.support.manual_clock import settle
 from tests.support.models import inactive
@@ -23,13 +25,15 @@ NOT_BUILT = (
     "system_modes_msgs/srv/GetMode",
     "system_modes_msgs/srv/GetAvailableModes",
     "system_modes_msgs/msg/ModeEvent",
-    "gem_state_msgs/msg/SystemStateStamped",
-    "gem_state_msgs/msg/TaskPlannerStatus",
-    "gem_state_msgs/msg/BatteryLevelStamped",
-    "gem_state_msgs/msg/EstopStamped",
-    "gem_state_msgs/msg/GpsAccuracyStamped",
-    "gem_state_msgs/msg/SignalStrengthStamped",
-    "gem_state_msgs/msg/TemperatureStamped",
+    "pilothouse_msgs/msg/SystemState",
+    "pilothouse_msgs/msg/TaskStatus",
+    "pilothouse_msgs/msg/BatteryLevel",
+    "pilothouse_msgs/msg/EmergencyStop",
+    "pilothouse_msgs/msg/GpsAccuracy",
+    "pilothouse_msgs/msg/SignalStrength",
+    "pilothouse_msgs/msg/Temperature",
+    "pilothouse_msgs/srv/DriveWaypoints",
+    "pilothouse_msgs/srv/StartTask",
 )
 """What no distribution of ROS 2 has."""
 
@@ -44,8 +48,9 @@ class Offered:
         missing: tuple[str, ...] = (),
         model: SmhModel | None = None,
         mapped: tuple[str, ...] = (),
+        settings: InterfaceSettings = USUAL_SETTINGS,
     ) -> None:
-        self.robot = RosRobot(model)
+        self.robot = RosRobot(model, settings)
         self.clock = self.robot.clock
         self.graph = FakeGraph(self.clock, missing)
         self.gateway = RosGateway(self.robot.interface, self.graph, self.clock, mapped)
@@ -103,8 +108,8 @@ def test_where_the_types_are_installed_they_are_used() -> None:
 
     assert types["/actuation/change_mode"] == "system_modes_msgs/srv/ChangeMode"
     assert types["/drive_base/mode_event"] == "system_modes_msgs/msg/ModeEvent"
-    assert types["/system_state"] == "gem_state_msgs/msg/SystemStateStamped"
-    assert types["/estop"] == "gem_state_msgs/msg/EstopStamped"
+    assert types["/system_state"] == "pilothouse_msgs/msg/SystemState"
+    assert types["/estop"] == "pilothouse_msgs/msg/EmergencyStop"
 
 
 def test_where_they_are_not_others_stand_in_and_nothing_else_is_heard() -> None:
@@ -116,6 +121,8 @@ def test_where_they_are_not_others_stand_in_and_nothing_else_is_heard() -> None:
     assert types["/drive_base/mode_event"] == "lifecycle_msgs/msg/TransitionEvent"
     assert types["/system_state"] == "diagnostic_msgs/msg/DiagnosticStatus"
     assert types["/task_planner_status"] == "diagnostic_msgs/msg/DiagnosticStatus"
+    assert types["/serve_waypoints"] == "diagnostic_msgs/srv/AddDiagnostics"
+    assert "/drive_waypoints" not in types
     assert "/estop" not in types
 
 
@@ -141,10 +148,60 @@ def test_what_has_no_type_at_all_is_left_out_and_said_once(
     (record,) = caplog.records
     assert record.levelno == logging.WARNING
     assert record.getMessage() == (
-        "not offered in ROS 2, since these types are not installed: "
-        "gem_state_msgs/msg/SystemStateStamped, gem_state_msgs/msg/TaskPlannerStatus, "
-        "std_srvs/srv/Empty"
+        "not offered in ROS 2, since these types are not installed: std_srvs/srv/Empty"
     )
+
+
+def test_what_needs_our_own_types_and_they_are_not_built_is_said_without_a_warning(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    caplog.set_level(logging.INFO)
+
+    Offered(NOT_BUILT)
+
+    offered, heard, *_ = caplog.records
+    assert (offered.levelno, heard.levelno) == (logging.INFO, logging.INFO)
+    assert offered.getMessage() == (
+        "not offered in ROS 2, since these types are not installed: "
+        "pilothouse_msgs/srv/DriveWaypoints"
+    )
+    assert heard.getMessage().startswith("not subscribed to in ROS 2, since these types are not")
+    assert "pilothouse_msgs/msg/EmergencyStop" in heard.getMessage()
+
+
+def test_messages_that_the_robot_file_names_and_that_are_missing_are_a_warning(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    missing = [f"gem_state_msgs/msg/{name}Stamped" for name in ("Estop", "SystemState")]
+
+    graph = Offered(tuple(missing), settings=InterfaceSettings(MessageSet.GEM)).graph
+
+    assert graph.types["/system_state"] == "diagnostic_msgs/msg/DiagnosticStatus"
+    assert graph.types["/battery_level"] == "gem_state_msgs/msg/BatteryLevelStamped"
+    (record,) = caplog.records
+    assert record.levelno == logging.WARNING
+    assert record.getMessage() == (
+        "not subscribed to in ROS 2, since these types are not installed: "
+        "gem_state_msgs/msg/EstopStamped"
+    )
+
+
+def test_the_log_lists_what_is_offered(caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.INFO)
+
+    Offered()
+
+    services, published, subscribed, *parts = [record.getMessage() for record in caplog.records]
+    assert services.startswith("ROS 2 services: /cancel_tasks [std_srvs/srv/Empty], /drive_way")
+    assert "/system_state [pilothouse_msgs/msg/SystemState]" in published
+    assert "/estop [pilothouse_msgs/msg/EmergencyStop]" in subscribed
+    assert [line.partition(":")[0] for line in parts] == [
+        "ROS 2 /actuation",
+        "ROS 2 /drive_base",
+        "ROS 2 /manipulator",
+    ]
+    assert "get_state" in parts[0]
+    assert "get_state" not in parts[1]
 
 
 def test_a_part_with_a_name_that_ros_does_not_allow_is_left_out_and_said_once(
@@ -202,14 +259,30 @@ async def test_modes_are_asked_and_told_in_the_types_that_stand_in(carried: Offe
     assert [event["goal_state"]["label"] for event in heard] == ["active.FAST"]
 
 
-async def test_the_state_of_the_robot_is_published_at_twenty_hertz(native: Offered) -> None:
-    before = len(native.graph.published("/system_state"))
+async def test_states_of_robot_and_task_are_published_together_at_twenty_hertz(
+    native: Offered,
+) -> None:
+    states: list[Any] = native.graph.published("/system_state")
+    tasks: list[Any] = native.graph.published("/task_planner_status")
+    before = len(states)
 
     await native.clock.advance(5.0)
 
-    published: list[Any] = native.graph.published("/system_state")
-    assert len(published) - before == 100
-    assert {message["state"] for message in published} == {0}
+    assert len(states) - before == 100
+    assert {message["state"] for message in states} == {0}
+    assert [m["header"]["stamp"] for m in states] == [m["header"]["stamp"] for m in tasks]
+
+
+@pytest.mark.parametrize("missing", [(), NOT_BUILT])
+async def test_a_file_that_cannot_be_served_is_answered_with_the_reason(
+    missing: tuple[str, ...],
+) -> None:
+    async for offered in run(Offered(missing)):
+        field = "load_namespace" if missing else "file"
+        response = await offered.call("/serve_waypoints", {field: "loop.csv"})
+
+        assert not response["success"]
+        assert response["message"].startswith("this robot has no folder for waypoint files")
 
 
 async def test_the_overlay_is_made_only_while_somebody_subscribes(native: Offered) -> None:

@@ -160,9 +160,9 @@ async def test_a_command_to_drive_is_seen_in_the_next_report(listening: Listenin
 async def test_a_vehicle_that_is_told_to_be_silent_is_heard_again_when_it_may_speak(
     listening: Listening,
 ) -> None:
-    listening.backend.set_vehicle_reporting(False)
+    listening.backend.set_vehicle_fault("silent")
     await listening.clock.advance(1.0)
-    listening.backend.set_vehicle_reporting(True)
+    listening.backend.set_vehicle_fault(None)
     await listening.clock.advance(0.1)
 
     assert [at for at, _ in listening.of(VehicleReport)] == [0.0, 1.05, 1.1]

@@ -163,8 +163,8 @@ STORY: list[tuple[float, Act]] = [
     (6.0, lambda s: s.supervisor.readings.submit([Reading("estop", value=False)])),
     (7.0, lambda s: s.supervisor.submit(HoldRequest("operator", "lunch", Actor("operator")))),
     (8.0, lambda s: s.supervisor.submit(ReleaseRequest("operator", Actor("operator")))),
-    (9.0, lambda s: s.backend.set_vehicle_reporting(False)),
-    (9.5, lambda s: s.backend.set_vehicle_reporting(True)),
+    (9.0, lambda s: s.backend.set_vehicle_fault("silent")),
+    (9.5, lambda s: s.backend.set_vehicle_fault(None)),
     (10.5, lambda s: s.supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))),
     (11.0, lambda s: s.supervisor.submit(EmergencyStopRequest(False, "test", Actor("operator")))),
 ]

@@ -30,6 +30,26 @@ def test_monitor_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> N
     ]
 
 
+def test_monitor_over_ros_needs_a_model_and_no_service(
+    monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    given: list[tuple[str, str, bool]] = []
+
+    def ros_monitor(path: str, form: str, *, once: bool) -> int:
+        given.append((path, form, once))
+        return 0
+
+    monkeypatch.setattr("api.cli.ros_monitor.ros_monitor", ros_monitor)
+
+    assert main(["monitor", "--ros2", "robot.yaml"]) == 0
+    assert main(["monitor", "--ros2", "robot.yaml", "--once", "--format", "json"]) == 0
+    assert given == [("robot.yaml", "text", False), ("robot.yaml", "json", True)]
+    with pytest.raises(SystemExit) as misused:
+        main(["monitor", "http://robot:8000", "--ros2", "robot.yaml"])
+    assert misused.value.code == 64
+    assert "not allowed with argument" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("error", "code", "words"),
     [

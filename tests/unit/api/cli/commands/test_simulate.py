@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from api.cli.command_line import main
-from api.serving.composition import EXAMPLE
+from service.files.model_file import EXAMPLE
 
 
 def test_simulate_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,9 +2,9 @@ import pytest
 from rich.text import Text
 
 from api.cli.monitor import blocks
-from api.cli.monitor.rows import SignalRow, part_rows
+from api.cli.monitor.rows import SignalRow
 from api.cli.monitor.store import Json, Robot
-from api.cli.monitor.view import Contact, Level
+from api.cli.monitor.view import Contact, Level, View
 from tests.support.monitor import (
     AT,
     after,
@@ -13,14 +13,12 @@ from tests.support.monitor import (
     error,
     event,
     frame,
+    hello,
     hold,
     named,
-    off_target,
-    part,
     robot,
     signal,
     stop,
-    system,
     system_state,
     task,
     this_device,
@@ -33,11 +31,6 @@ def plain(lines: list[Text]) -> list[str]:
     return [line.plain.rstrip() for line in lines]
 
 
-def drawn_parts(*parts: Json, width: int = 80, later_s: float = 0.0) -> list[str]:
-    rows = part_rows(named("name", *parts))
-    return plain(blocks.parts(view(robot(), later_s=later_s), rows, width, None))
-
-
 def drawn_signals(*signals: Json, later_s: float = 0.0, room: int | None = None) -> list[str]:
     rows = [SignalRow(given) for given in signals]
     return plain(blocks.signals(view(robot(), later_s=later_s), rows, 80, room))
@@ -47,147 +40,37 @@ def drawn_task(*messages: Json, later_s: float = 0.0) -> list[str]:
     return plain(blocks.task(view(robot(*messages), later_s=later_s), console()))
 
 
-def test_the_head_says_where_this_is_from_and_of_when() -> None:
-    (line,) = blocks.head(view(robot()), 60)
+def drawn_head(seen: View) -> list[str]:
+    return plain(blocks.head(seen))
 
-    assert line.plain.startswith("Pilothouse  http://robot:8000 ")
-    assert line.plain[-3] == ":"
-    assert line.cell_len == 60
+
+def test_the_head_is_that_of_the_mode_monitor_with_date_model_and_address() -> None:
+    seen = view(robot(hello(model="actuation.yaml")))
+
+    title, about = drawn_head(seen)
+
+    assert title.startswith(" System Modes Monitor - Mon May  4 ")
+    assert title.endswith(" 2026")
+    assert about == " Model: actuation.yaml  http://robot:8000"
 
 
 def test_the_head_says_what_is_not_real() -> None:
     state = {**system_state(), "simulated": ["nodes", "vehicle"]}
-    (line,) = blocks.head(view(robot(frame(system_state=state))), 80)
 
-    assert "  simulated: nodes, vehicle " in line.plain
+    about = drawn_head(view(robot(frame(system_state=state))))[1]
+
+    assert about.endswith("  simulated: nodes, vehicle")
 
 
 def test_the_head_marks_what_is_old() -> None:
-    (line,) = blocks.head(view(robot(), Contact(Level.LOST, 9.0)), 60)
-
-    assert "  old, from " in line.plain
+    assert drawn_head(view(robot(), Contact(Level.LOST, 9.0)))[0].endswith(" 2026 (old)")
 
 
-def test_before_the_first_frame_the_head_says_no_time() -> None:
-    assert plain(blocks.head(view(Robot()), 60)) == ["Pilothouse  http://robot:8000"]
-
-
-def test_a_part_has_target_state_and_mode_and_a_star_where_they_are_inferred() -> None:
-    target = {"state": "active", "mode": "FAST"}
-    base = part("base", mode="FAST", target=target)
-    starred = {**base, "actual": {**base["actual"], "mode_inferred": True}}
-
-    assert drawn_parts(system("robot", "base"), starred) == [
-        "  part   target              state            mode",
-        "  robot                      active(*)",
-        "    base active.FAST         active           FAST(*)",
+def test_before_the_first_frame_the_head_says_no_time_and_no_model() -> None:
+    assert drawn_head(view(Robot())) == [
+        " System Modes Monitor",
+        " Model: ?  http://robot:8000",
     ]
-
-
-def test_what_is_pursued_counts_more_than_what_was_asked() -> None:
-    pursued: Json = {
-        "state": "active",
-        "mode": "SLOW",
-        "because": "rule",
-        "rule": "slow_down",
-        "blockers": [],
-    }
-    wanted = {"state": "active", "mode": "FAST"}
-
-    lines = drawn_parts(part("base", target=wanted, effective_target=pursued))
-
-    assert "active.SLOW" in lines[1]
-    assert "FAST" not in lines[1]
-    assert lines[1].endswith(" rule slow_down")
-
-
-def test_who_set_a_target_is_told_beside_how_long_the_part_deviates() -> None:
-    pursued: Json = {
-        "state": "active",
-        "mode": "SLOW",
-        "because": "rule",
-        "rule": "slow_down",
-        "blockers": [],
-    }
-
-    line = drawn_parts(off_target("arm", effective_target=pursued), later_s=12.0)[1]
-
-    assert line.endswith(" deviates 12 s, rule slow_down")
-
-
-def test_a_fallback_says_which_invariant_is_broken() -> None:
-    because: Json = {"because": "invariant", "rule": None, "blockers": [{"message": "too hot"}]}
-    pursued: Json = {"state": "active", "mode": "SLOW", **because}
-
-    line = drawn_parts(part("base", mode="SLOW", effective_target=pursued), width=120)[1]
-
-    assert line.endswith(" invariant: too hot")
-
-
-def test_a_target_that_was_requested_needs_no_word_more() -> None:
-    pursued: Json = {
-        "state": "active",
-        "mode": "FAST",
-        "because": "requested",
-        "rule": None,
-        "blockers": [],
-    }
-
-    line = drawn_parts(part("base", mode="FAST", effective_target=pursued))[1]
-
-    assert line.endswith("FAST")
-
-
-def test_a_deviation_is_marked_and_its_time_counted() -> None:
-    line = drawn_parts(off_target("arm"), later_s=12.0)[1]
-
-    assert line.startswith("! arm ")
-    assert line.endswith(" deviates 12 s")
-
-
-def test_a_system_that_is_there_by_name_tells_which_of_its_parts_is_not() -> None:
-    reason = "arm is unconfigured, target inactive"
-    deviates: Json = {"converged": False, "deviation_since_at": AT, "deviation_reason": reason}
-    target = {"state": "inactive", "mode": None}
-    parts = (
-        system("robot", "arm", state="inactive", target=target, **deviates),
-        part("arm", "unconfigured", target=target, **deviates),
-    )
-
-    _, robot, arm = drawn_parts(*parts, width=120, later_s=12.0)
-
-    assert robot.endswith(f" deviates 12 s: {reason}")
-    assert arm.endswith(" deviates 12 s"), "its own deviation is in its columns"
-
-
-def test_a_part_that_changes_is_marked_as_changing() -> None:
-    line = drawn_parts(off_target("arm", change="c1"), later_s=3.0)[1]
-
-    assert line.startswith("> arm ")
-    assert line.endswith(" changing 3 s")
-
-
-def test_a_node_that_is_not_reachable_says_so_in_a_word() -> None:
-    line = drawn_parts(part("arm", reachable=False))[1]
-
-    assert line.startswith("x arm ")
-    assert line.endswith(" unreachable")
-
-
-def test_why_a_part_cannot_be_judged_is_told_in_the_words_of_the_service() -> None:
-    lost = part("arm", "unknown")
-    why = {**lost, "actual": {**lost["actual"], "undecidable": True, "reason": "never reported"}}
-
-    line = drawn_parts(why)[1]
-
-    assert " ? " in line
-    assert line.endswith(" never reported")
-
-
-def test_a_narrow_terminal_shows_what_a_part_is_in_and_its_mark() -> None:
-    line = drawn_parts(off_target("arm"), width=40)[1]
-
-    assert line == "! arm  inactive"
 
 
 def test_a_signal_has_value_age_and_verdict() -> None:
@@ -404,26 +287,3 @@ def test_the_monitor_of_a_device_says_whose_word_counts() -> None:
     own = this_device("arm", "device")
 
     assert drawn_devices(this_device=own) == ["device arm: acts alone"]
-
-
-def drawn_on_devices(*parts: Json, later_s: float = 0.0) -> str:
-    devices = named("device", device("arm", "lost"), device("base"))
-    drawn = view(robot(frame(devices=devices)), later_s=later_s)
-    return plain(blocks.parts(drawn, part_rows(named("name", *parts)), 100, None))[1]
-
-
-def test_a_part_says_on_which_device_it_is() -> None:
-    assert drawn_on_devices(part("drive_base", device="base")).endswith("on base")
-
-
-def test_a_part_of_a_lost_device_is_told_as_it_was_and_how_old_that_is() -> None:
-    known = {"state": "active", "mode": "FAST"}
-    arm = off_target("drive_base", reachable=False, device="arm", last_known=known)
-
-    assert drawn_on_devices(arm, later_s=12).endswith("was active.FAST 12 s ago, on arm")
-
-
-def test_a_part_of_which_nothing_was_known_is_only_unreachable() -> None:
-    arm = off_target("drive_base", reachable=False, device="arm", last_known=None)
-
-    assert drawn_on_devices(arm, later_s=12).endswith("unreachable for 12 s, on arm")

@@ -64,7 +64,7 @@ def test_once_is_one_picture(capsys: Output) -> None:
     assert monitor(URL, "text", once=True) == 0
 
     told = capsys.readouterr().out
-    assert told.startswith(f"Pilothouse  {URL}")
+    assert told.splitlines()[1] == f" Model: robot.yaml  {URL}"
     assert "\x1b" not in told
     assert all(len(line) <= 80 for line in told.splitlines())
 
@@ -134,7 +134,7 @@ def test_a_log_ends_well_when_it_is_told_to(
     assert monitor(URL, "text", once=False) == 0
 
     told = capsys.readouterr().out
-    assert told.count("Pilothouse  ") == 2
+    assert told.count("System Modes Monitor") == 2
     assert "\x1b" not in told
 
 

@@ -72,7 +72,7 @@ def test_pictures_in_a_log_have_an_empty_line_between_them() -> None:
     log.look(view(KNOWN))
     log.look(view(CHANGED))
 
-    assert text_in(out).count("\n\nPilothouse  ") == 1
+    assert text_in(out).count("\n\n System Modes Monitor - ") == 1
     assert not text_in(out).endswith("\n\n")
 
 

@@ -1,12 +1,13 @@
 import pytest
 
 from api.cli.monitor.picture import picture
-from api.cli.monitor.store import Json, Robot
+from api.cli.monitor.store import Json, Robot, fold
 from api.cli.monitor.view import Contact, Level, View
 from tests.support.monitor import (
     console,
     event,
     frame,
+    graph,
     hold,
     named,
     off_target,
@@ -42,8 +43,23 @@ def drawn(seen: View, width: int = 80, height: int | None = None) -> list[str]:
 def test_it_tells_how_it_is_then_parts_signals_and_task() -> None:
     lines = drawn(busy(), height=40)
 
-    beginnings = [line.split(" ")[0] or line.split()[0] for line in lines if line]
-    order = ["Pilothouse", "ERROR", "part", "robot", "signal", "battery_level", "task", "(*)"]
+    beginnings = [" ".join(line.split()[:2]) for line in lines]
+    order = [
+        "System Modes",
+        "Model: robot.yaml",
+        "ERROR battery",
+        "part |",
+        "- systems",
+        "robot |",
+        "- nodes",
+        "arm |",
+        "! base",
+        "(*) =",
+        "! base:",
+        "signal value",
+        "battery_level 1",
+        "task t1",
+    ]
     assert [word for word in beginnings if word in order] == order
 
 
@@ -60,7 +76,7 @@ def test_it_fits_any_terminal(width: int, height: int) -> None:
 def test_how_it_is_and_the_task_are_there_however_short_the_terminal_is(height: int) -> None:
     lines = drawn(busy(), height=height)
 
-    assert lines[1].startswith("ERROR  battery is low")
+    assert any(line.startswith("ERROR  battery is low") for line in lines[:3])
     assert any(line.startswith("task t1  PAUSED") for line in lines)
 
 
@@ -69,11 +85,9 @@ def test_with_more_parts_than_lines_what_deviates_is_there_and_the_rest_is_count
     parts = [system("robot", *names), *(part(name) for name in names[:-1]), off_target("node_199")]
     lines = drawn(view(robot(parts=tuple(parts), signals=SIGNALS)), height=24)
 
-    at = next(place for place, line in enumerate(lines) if line.startswith("  part"))
-    assert lines[at + 1].startswith("! node_199 ")
-    assert lines[at + 2].startswith("  robot ")
-    rows = lines[at + 1 :]
-    shown = sum("node_" in line or line.startswith("  robot") for line in rows)
+    assert any(line.startswith("!       node_199 | ") for line in lines)
+    assert "! node_199: deviates 0 s" in lines
+    shown = sum("node_" in line or " robot | " in line for line in lines if " | " in line)
     assert f"  ... and {201 - shown} more parts" in lines
     assert len(lines) == 24
 
@@ -83,8 +97,8 @@ def test_many_reasons_leave_room_for_the_rest() -> None:
     state = frame(system_state=system_state("ERROR", *reasons))
     lines = drawn(busy(state), height=24)
 
-    assert "  ... and 42 more lines" in lines
-    assert any(line.startswith("!   base") for line in lines)
+    assert "  ... and 43 more lines" in lines
+    assert any(line.startswith("!           base | ") for line in lines)
 
 
 def test_without_a_limit_all_parts_are_there_and_nothing_of_before() -> None:
@@ -92,14 +106,14 @@ def test_without_a_limit_all_parts_are_there_and_nothing_of_before() -> None:
     parts = (system("robot", *names), *(part(name) for name in names))
     lines = drawn(view(robot(*BUSY, parts=parts)))
 
-    assert sum("node_" in line for line in lines) == 200
+    assert sum("node_" in line and " | " in line for line in lines) == 200
     assert not any("drives" in line for line in lines)
 
 
 def test_where_there_is_room_it_tells_what_happened() -> None:
     lines = drawn(busy(), height=40)
 
-    assert lines[-3].endswith("task t8 drives")
+    assert lines[-1].endswith("task t8 drives")
 
 
 def test_an_old_picture_is_kept_and_dimmed() -> None:
@@ -107,13 +121,23 @@ def test_an_old_picture_is_kept_and_dimmed() -> None:
     lines = picture(lost, console(80), 40)
 
     plain = [line.plain for line in lines]
-    assert plain[1].startswith("NO CONTACT")
+    assert plain[2].startswith("NO CONTACT")
     assert any(line.startswith("WAS ERROR") for line in plain)
-    robots = next(line for line in lines if line.plain.startswith("  robot"))
+    robots = next(line for line in lines if " robot | " in line.plain)
     assert any(span.style == "dim" for span in robots.spans)
 
 
 def test_before_anything_is_known_it_says_only_that() -> None:
     waiting = view(Robot(), Contact(Level.CONNECTING, 0.0))
 
-    assert drawn(waiting, height=24)[1:] == ["CONNECTING  waiting for the first values"]
+    assert drawn(waiting, height=24)[2:] == ["CONNECTING  waiting for the first values"]
+
+
+def test_of_a_ros_graph_there_are_only_parts() -> None:
+    seen = view(fold(Robot(), graph(*PARTS)))
+
+    lines = drawn(seen)
+
+    assert lines[1] == " Model: models/robot.yaml  http://robot:8000"
+    assert any(line.startswith("- nodes ---") for line in lines)
+    assert not any(line.startswith(("  signal", "no task", "IDLE")) for line in lines)

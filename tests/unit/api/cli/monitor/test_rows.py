@@ -12,24 +12,20 @@ from api.cli.monitor.store import Json
 from tests.support.monitor import named, off_target, part, signal, system
 
 
-def tree(*parts: Json) -> list[tuple[str, int]]:
-    return [(row.name, row.depth) for row in part_rows(named("name", *parts))]
+def names(*parts: Json) -> list[str]:
+    return [row.name for row in part_rows(named("name", *parts))]
 
 
-def test_parts_are_below_their_systems() -> None:
-    parts = (system("robot", "arm", "body"), system("body", "leg"), part("arm"), part("leg"))
+def test_systems_come_before_nodes_and_both_are_in_the_order_of_their_bytes() -> None:
+    parts = (part("leg"), system("robot", "arm", "body"), system("body", "leg"), part("Arm"))
 
-    assert tree(*parts) == [("robot", 0), ("arm", 1), ("body", 1), ("leg", 2)]
+    assert names(*parts) == ["body", "robot", "Arm", "leg"]
 
 
-def test_a_part_of_two_systems_is_below_each() -> None:
+def test_a_part_of_two_systems_has_one_row() -> None:
     parts = (system("left", "arm"), system("right", "arm"), part("arm"))
 
-    assert tree(*parts) == [("left", 0), ("arm", 1), ("right", 0), ("arm", 1)]
-
-
-def test_a_part_that_is_not_known_yet_has_no_row() -> None:
-    assert tree(system("robot", "arm")) == [("robot", 0)]
+    assert names(*parts) == ["left", "right", "arm"]
 
 
 def test_what_needs_attention_is_marked() -> None:
@@ -51,7 +47,7 @@ def test_a_signal_is_marked_when_it_is_bad_or_about_to_be() -> None:
 
 
 def test_where_all_fit_they_keep_their_order() -> None:
-    rows = [PartRow(part("a")), PartRow(off_target("b"), 1)]
+    rows = [PartRow(part("a")), PartRow(off_target("b"))]
 
     assert choose(rows, 2).rows == tuple(rows)
     assert choose(rows, None).rows == tuple(rows)
@@ -60,15 +56,15 @@ def test_where_all_fit_they_keep_their_order() -> None:
 def test_where_they_do_not_fit_what_needs_attention_is_first_and_the_rest_is_counted() -> None:
     rows = [
         PartRow(part("a")),
-        PartRow(off_target("b", change="c1"), 1),
-        PartRow(off_target("c"), 1),
-        PartRow(part("d"), 1),
-        PartRow(part("e", reachable=False), 1),
+        PartRow(off_target("b", change="c1")),
+        PartRow(off_target("c")),
+        PartRow(part("d")),
+        PartRow(part("e", reachable=False)),
     ]
 
     chosen = choose(rows, 4)
 
-    assert [(row.name, row.depth) for row in chosen.rows] == [("e", 0), ("c", 0), ("b", 0)]
+    assert [row.name for row in chosen.rows] == ["e", "c", "b"]
     assert (chosen.left_out, chosen.marked) == (2, 0)
 
 
@@ -79,15 +75,6 @@ def test_marked_ones_for_which_there_is_no_room_are_counted_too() -> None:
 
     assert len(chosen.rows) == 2
     assert (chosen.left_out, chosen.marked) == (3, 3)
-
-
-def test_a_marked_part_of_two_systems_is_shown_once() -> None:
-    rows = [PartRow(part("x")), PartRow(off_target("a"), 1), PartRow(off_target("a"), 2)]
-
-    chosen = choose([*rows, PartRow(part("y"))], 3)
-
-    assert [row.name for row in chosen.rows] == ["a", "x"]
-    assert chosen.left_out == 1
 
 
 def test_without_room_all_are_counted() -> None:

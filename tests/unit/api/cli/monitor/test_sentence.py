@@ -2,13 +2,14 @@ import pytest
 
 from api.cli.monitor.sentence import (
     Sentence,
+    absence_sentence,
     contact_sentence,
     restart_sentence,
     state_sentence,
     stop_sentence,
     storage_sentence,
 )
-from api.cli.monitor.store import Json, Robot
+from api.cli.monitor.store import Json, Robot, fold
 from api.cli.monitor.view import Contact, Level, seconds_of
 from api.cli.monitor.words import time_of_day
 from tests.support.monitor import (
@@ -16,10 +17,13 @@ from tests.support.monitor import (
     after,
     device,
     frame,
+    graph,
     hello,
     named,
+    part,
     robot,
     stop,
+    system,
     system_state,
     view,
 )
@@ -66,9 +70,9 @@ def test_no_combination_is_told_better_than_it_is() -> None:
         if known.system_state is not None and known.system_state["state"] == "ERROR":
             assert said.level == "error", members
             assert said.word in ("ERROR", "STILL MOVING"), members
-        for part in parts.values():
-            if not part["reachable"]:
-                assert f"{part['name']} is unreachable" in whole, members
+        for each in parts.values():
+            if not each["reachable"]:
+                assert f"{each['name']} is unreachable" in whole, members
 
 
 def test_an_error_without_a_reason_tells_its_codes() -> None:
@@ -122,6 +126,35 @@ def test_without_contact_the_state_is_one_that_was() -> None:
     lost = Contact(Level.LOST, 14.0)
 
     assert state_sentence(view(robot(), lost)) == Sentence("WAS IDLE", "no task")
+
+
+def told_of_graph(*parts: Json, settled: bool = True) -> Sentence | None:
+    return absence_sentence(view(fold(Robot(), graph(*parts, settled=settled))))
+
+
+def away(*names: str) -> list[Json]:
+    return [part(name, "unknown", reachable=False) for name in names]
+
+
+def test_nodes_of_a_graph_that_do_not_answer_are_named() -> None:
+    assert told_of_graph(part("arm"), system("robot", "arm")) is None
+    assert told_of_graph(part("arm"), *away("a", "b", "c", "d", "e")) == Sentence(
+        "ABSENT", "5 of 6 nodes: a, b, c and 2 more", level="attention"
+    )
+    assert told_of_graph(part("arm"), *away("base"), settled=False) == Sentence(
+        "LOOKING FOR", "1 of 2 nodes: base"
+    )
+
+
+def test_where_no_node_answers_it_says_what_may_be_wrong() -> None:
+    said = told_of_graph(*away("arm"))
+
+    assert said is not None
+    assert "ROS_DOMAIN_ID" in said.more[0]
+
+
+def test_what_a_service_tells_of_its_nodes_is_told_elsewhere() -> None:
+    assert absence_sentence(view(robot(parts=tuple(away("arm"))))) is None
 
 
 def test_a_released_stop_is_not_worth_a_word() -> None:

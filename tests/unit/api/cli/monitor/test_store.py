@@ -8,6 +8,7 @@ from tests.support.monitor import (
     error,
     event,
     frame,
+    graph,
     hello,
     hold,
     named,
@@ -65,7 +66,7 @@ def test_after_a_restart_nothing_of_before_is_known_but_that_it_happened_and_whe
     known = fold(robot(parts=(part("arm"),)), hello("two", after(3)))
 
     note = Note(after(3), "the service was restarted: earlier tasks and holds are gone")
-    assert known == Robot(epoch="two", restarted_at=after(3), notes=(note,))
+    assert known == Robot("robot.yaml", epoch="two", restarted_at=after(3), notes=(note,))
 
 
 def test_a_restart_that_kept_everything_is_told_by_its_own_events() -> None:
@@ -74,7 +75,7 @@ def test_a_restart_that_kept_everything_is_told_by_its_own_events() -> None:
     restarted = fold(known, hello("two", after(3), boot=2))
 
     assert restarted == Robot(
-        epoch="two", boot=2, restarted_at=after(3), last_event_id=7, notes=known.notes
+        "robot.yaml", epoch="two", boot=2, restarted_at=after(3), last_event_id=7, notes=known.notes
     )
 
 
@@ -126,6 +127,24 @@ def test_it_is_whole_when_there_is_something_of_everything() -> None:
     assert fold(
         Robot(), frame(parts={}, signals={}, holds={}, emergency_stop=stop(), task=None)
     ).is_whole
+
+
+def test_a_service_that_does_not_name_its_model_is_understood_all_the_same() -> None:
+    unnamed = {key: value for key, value in hello().items() if key != "model"}
+
+    assert fold(Robot(), unnamed).model == ""
+
+
+def test_of_a_graph_it_is_whole_once_all_was_heard_that_can_be_heard_soon() -> None:
+    begun = fold(Robot(), graph(part("arm"), part("base"), settled=False))
+    changed = fold(begun, graph(part("arm", "inactive"), at=after(1)))
+
+    assert not begun.is_whole
+    assert changed.is_whole
+    assert changed.as_json() == {
+        "at": after(1),
+        "parts": named("name", part("arm", "inactive"), part("base")),
+    }
 
 
 def test_as_json_it_has_each_member_as_an_answer_to_a_request_has_it() -> None:

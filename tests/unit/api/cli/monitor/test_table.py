@@ -1,6 +1,6 @@
 from collections.abc import Sequence
 
-from api.cli.monitor.table import Column, printable, table
+from api.cli.monitor.table import Column, Layout, printable, table
 
 NAME_AND_STATE = (Column("name", least=4), Column("state", least=5))
 
@@ -59,3 +59,26 @@ def test_each_row_has_its_style() -> None:
     titles, row = table(NAME_AND_STATE, [(("arm", "active"), "bold red")], 80, "underline")
 
     assert (titles.style, row.style) == ("underline", "bold red")
+
+
+def test_cells_of_a_column_may_be_aligned_to_the_right() -> None:
+    columns = (Column("name", least=4, usual=8, is_right=True), Column("state", least=5))
+
+    assert drawn(columns, ("arm", "active")) == ["    name state", "     arm active"]
+
+
+def test_a_title_may_span_several_columns_also_where_one_is_left_out() -> None:
+    columns = (
+        Column("name", least=4),
+        Column("target", least=4, needs_width=30, is_right=True),
+        Column("actual", least=4, is_right=True),
+    )
+    above = [("part", (0,)), ("state", (1, 2))]
+    rows = [("name", "target", "actual"), ("arm", "active", "off")]
+    wide, narrow = (Layout(columns, rows, width, " | ") for width in (30, 29))
+
+    assert wide.spanning(above).plain == "part |           state"
+    assert wide.line(rows[1]).plain == "arm  | active |    off"
+    assert wide.width == 22
+    assert narrow.spanning(above).plain == "part |  state"
+    assert narrow.width == 13

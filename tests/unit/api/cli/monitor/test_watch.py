@@ -1,6 +1,6 @@
 from api.cli.monitor.view import Contact, Level
 from api.cli.monitor.watch import ServerClock, Watch, local_now
-from tests.support.monitor import AT, URL, after, event, frame, hello
+from tests.support.monitor import AT, URL, after, event, frame, graph, hello
 
 
 class Time:
@@ -22,6 +22,13 @@ def test_it_is_live_as_long_as_frames_come() -> None:
     assert watch.contact() == Contact(Level.LIVE, time.now_s - 1000.0)
     time.now_s += 0.2
     assert watch.contact().level is Level.LOST
+
+
+def test_it_is_live_as_long_as_a_graph_is_observed() -> None:
+    watch = Watch(URL, now=Time())
+    watch.take(graph())
+
+    assert watch.contact() == Contact(Level.LIVE, 0.0)
 
 
 def test_contact_that_broke_is_lost_at_once_with_the_reason() -> None:

@@ -1,3 +1,5 @@
+from datetime import datetime
+
 import pytest
 
 from api.cli.monitor import words
@@ -115,6 +117,12 @@ def test_where_no_vehicle_is_known_its_speed_is_not() -> None:
 def test_the_time_of_day_is_local() -> None:
     assert words.time_of_day(0.0)[2:3] == ":"
     assert len(words.time_of_day(0.0)) == len("12:00:00")
+
+
+def test_date_and_time_are_as_those_of_the_mode_monitor() -> None:
+    at = datetime(2026, 5, 4, 12, 0, 5).astimezone().timestamp()
+
+    assert words.date_and_time(at) == "Mon May  4 12:00:05 2026"
 
 
 def test_how_a_task_ended_is_told_with_its_way_and_time() -> None:

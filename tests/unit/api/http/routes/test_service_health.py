@@ -7,6 +7,7 @@ import pytest
 from fastapi import FastAPI
 
 from domain.actor import Actor
+from domain.controller import NavigationStatus
 from domain.findings import Finding
 from domain.graph_terms import GraphFault, GraphFaultKind
 from domain.inputs import (
@@ -145,10 +146,21 @@ async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
     assert (await warnings(http))["NO_POSE"] == "the vehicle never reported a pose"
     async with running(supervisor):
         assert "NO_POSE" not in await warnings(http)
-        backend.set_vehicle_reporting(False)
+        backend.set_vehicle_fault("silent")
         await clock.advance(1)
 
         assert (await warnings(http))["NO_POSE"] == "no pose of the vehicle for 0.3 s"
+
+
+async def test_a_controller_that_is_gone_is_a_warning(
+    http: httpx.AsyncClient, live: tuple[Supervisor, SimulatedBackend]
+) -> None:
+    supervisor, _ = live
+    supervisor.deliver(NavigationStatus(available=False, reason="the controller is gone"))
+    assert (await warnings(http))["NO_CONTROLLER"] == "the controller is gone"
+    supervisor.deliver(NavigationStatus(available=True))
+
+    assert "NO_CONTROLLER" not in await warnings(http)
 
 
 async def test_a_vehicle_that_cannot_be_commanded_is_a_warning(

@@ -16,7 +16,6 @@ from api.http.schemas.simulation import (
     VehicleStep,
     place_in_body,
 )
-from domain.simulation.node_settings import Fault
 
 READING = {"reading": {"battery_level": 0.5}}
 
@@ -50,6 +49,7 @@ def test_what_is_left_out_is_usual() -> None:
         ({"node": "arm", "fault": "silent"}, NodeStep),
         ({"node": "arm", "parameters": {"max_torque": 0.1}}, NodeStep),
         ({"vehicle": "silent"}, VehicleStep),
+        ({"vehicle": "weak_brakes"}, VehicleStep),
         ({"request": {"method": "GET", "path": "/tasks"}}, RequestStep),
         ({"expect": {"task": None}}, ExpectStep),
         ({"expect": "battery_level >= 0.3"}, ConditionStep),
@@ -59,15 +59,6 @@ def test_a_step_is_told_by_what_it_names(step: dict[str, Any], kind: type) -> No
     (read,) = body(step).steps
 
     assert type(read) is kind
-
-
-@pytest.mark.parametrize(
-    ("fault", "meant"), [("die", Fault.DIE), ("error", Fault.ERROR), ("recover", None)]
-)
-def test_a_fault_is_set_or_ended(fault: str, meant: Fault | None) -> None:
-    step = NodeStep.model_validate({"t_s": 0, "node": "arm", "fault": fault})
-
-    assert step.set_fault == meant
 
 
 @pytest.mark.parametrize(

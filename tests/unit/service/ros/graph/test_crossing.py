@@ -265,6 +265,7 @@ class FakeService:
         self._callback = callback
         self.sent: list[tuple[str, int]] = []
         self.client_is_gone = False
+        self.make_request: type[Word] = Word
 
     def send_response(self, response: Word, header: int) -> None:
         if self.client_is_gone:
@@ -273,7 +274,7 @@ class FakeService:
 
     def hear(self, word: str, header: int) -> None:
         """Take a request, as rclpy's executor does."""
-        response = self._callback(Word(word), Word())
+        response = self._callback(self.make_request(word), Word())
         self.send_response(response, header)
 
 
@@ -342,6 +343,26 @@ async def test_an_answer_that_is_no_response_leaves_it_empty(
 
     assert service.sent == [("", 1)]
     assert "/echo: a request gets an empty response" in caplog.text
+
+
+async def test_a_large_request_is_read_on_the_thread_that_receives_it(
+    crossing: Crossing,
+) -> None:
+    threads: list[threading.Thread] = []
+
+    class Watched(Word):
+        @classmethod
+        def get_fields_and_field_types(cls) -> dict[str, str]:
+            threads.append(threading.current_thread())
+            return super().get_fields_and_field_types()
+
+    service = served(crossing, echo)
+    service.make_request = Watched
+    await elsewhere(service.hear, "go", 1)
+    await until(lambda: bool(service.sent))
+
+    assert service.sent == [("go!", 1)]
+    assert threading.main_thread() not in threads
 
 
 async def test_an_answer_to_nobody_is_no_fault(

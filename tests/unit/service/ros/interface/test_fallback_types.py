@@ -46,6 +46,17 @@ def test_modes_are_listed_as_states() -> None:
     }
 
 
+def test_a_task_is_asked_for_by_the_only_text_of_a_request() -> None:
+    carrier = SERVICE_FALLBACKS["pilothouse_msgs/srv/StartTask"]
+
+    assert carrier.type == "diagnostic_msgs/srv/AddDiagnostics"
+    assert carrier.request({"load_namespace": "loop.csv"}) == {"file": "loop.csv"}
+    taken = carrier.response({"success": True, "message": "", "task": "t3"})
+    assert taken == {"success": True, "message": "t3"}
+    refused = carrier.response({"success": False, "message": "no such file", "task": ""})
+    assert refused == {"success": False, "message": "no such file"}
+
+
 def test_a_mode_event_is_a_transition_between_labels() -> None:
     carrier = TOPIC_FALLBACKS["system_modes_msgs/msg/ModeEvent"]
 
@@ -68,7 +79,7 @@ def carried(type_name: str, message: Fields) -> tuple[int, str, str, dict[str, s
 
 
 def test_the_system_state_is_a_diagnostic_with_the_errors_by_name() -> None:
-    found = carried("gem_state_msgs/msg/SystemStateStamped", {"state": 2, "error_code": 1 + 64})
+    found = carried("pilothouse_msgs/msg/SystemState", {"state": 2, "error_code": 1 + 64})
 
     errors = "BATTERY_LOW, STALE_DATA"
     assert found == (
@@ -80,19 +91,19 @@ def test_the_system_state_is_a_diagnostic_with_the_errors_by_name() -> None:
 
 
 def test_without_an_error_the_system_state_is_ok() -> None:
-    found = carried("gem_state_msgs/msg/SystemStateStamped", {"state": 1, "error_code": 0})
+    found = carried("pilothouse_msgs/msg/SystemState", {"state": 1, "error_code": 0})
 
     assert found[:3] == (0, "pilothouse: system state", "RUNNING")
 
 
 def test_declared_errors_share_one_name() -> None:
-    *_, values = carried("gem_state_msgs/msg/SystemStateStamped", {"state": 2, "error_code": 128})
+    *_, values = carried("pilothouse_msgs/msg/SystemState", {"state": 2, "error_code": 128})
 
     assert values["errors"] == "DECLARED"
 
 
 def test_the_task_status_is_a_diagnostic() -> None:
-    found = carried("gem_state_msgs/msg/TaskPlannerStatus", {"status": 1})
+    found = carried("pilothouse_msgs/msg/TaskStatus", {"status": 1})
 
     assert found == (
         0,

@@ -19,7 +19,7 @@ def test_everything_is_found_by_its_full_name() -> None:
     assert all(service.name == name for name, service in interface.services.items())
     assert all(topic.name == name for name, topic in interface.topics.items())
     assert all(heard.name == name for name, heard in interface.heard.items())
-    assert len(interface.services) == 3 * (5 + 3) + 1
+    assert len(interface.services) == 3 * (5 + 3) + 3
     assert len(interface.topics) == 3 * 4 + 3 + 2
     assert set(interface.heard) == {
         "/battery_level",

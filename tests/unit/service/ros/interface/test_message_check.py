@@ -55,6 +55,11 @@ def test_a_request_without_fields_takes_none() -> None:
         (Kind.INT32, 2**31),
         (Kind.UINT32, -1),
         (Kind.UINT32, 2**32),
+        (Kind.UINT64, -1),
+        (Kind.UINT64, 2**64),
+        (Kind.NUMBER, 10**400),
+        (Kind.LIST, {}),
+        (Kind.LIST, "1,2"),
     ],
 )
 def test_a_value_of_another_type_is_refused(kind: Kind, value: object) -> None:

@@ -5,8 +5,9 @@ from typing import Any
 import pytest
 
 from domain.inputs import CancelTaskRequest, EmergencyStopRequest, HoldRequest, Reading, TaskRequest
+from service.ros.interface.settings import InterfaceSettings
 from tests.support.paths import straight
-from tests.support.ros_robot import RosRobot
+from tests.support.ros_robot import RosRobot, running_ros_robot
 
 OVERLAY, PATH = "/pilothouse/overlay", "/pilothouse/path"
 DONE, AHEAD, LOOKAHEAD, VEHICLE, TEXT = range(5)
@@ -155,11 +156,11 @@ async def test_who_comes_when_nobody_listened_gets_the_path_with_the_next_frames
     assert [len(each["poses"]) for each in heard] == [2]
 
 
-async def test_the_frame_is_that_of_the_robot_file(robot: RosRobot) -> None:
-    robot.supervisor.frame_id = "odom"
-    heard = robot.hear(OVERLAY)
+async def test_the_frame_is_that_of_the_robot_file() -> None:
+    async with running_ros_robot(settings=InterfaceSettings(frame_id="odom")) as robot:
+        heard = robot.hear(OVERLAY)
 
-    await robot.clock.advance(0.1)
+        await robot.clock.advance(0.1)
 
     assert {each["header"]["frame_id"] for each in heard[-1]["markers"]} == {"odom"}
 

@@ -16,14 +16,14 @@ def send(robot: RosRobot, topic: str, fields: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("topic", "type_name", "fields", "value"),
     [
-        ("/battery_level", "BatteryLevelStamped", {"battery_level": 0.75}, 0.75),
-        ("/battery_level", "BatteryLevelStamped", {"battery_level": 1}, 1.0),
-        ("/estop", "EstopStamped", {"enabled": True}, True),
-        ("/gps_accuracy", "GpsAccuracyStamped", {"accuracy": 42.0}, 42.0),
-        ("/signal_strength", "SignalStrengthStamped", {"strength": 0}, "NOT_CONNECTED"),
-        ("/signal_strength", "SignalStrengthStamped", {"strength": 1}, "CONNECTED"),
-        ("/signal_strength", "SignalStrengthStamped", {"strength": 2}, "LOW_SIGNAL"),
-        ("/temperature", "TemperatureStamped", {"temperature": -3.5}, -3.5),
+        ("/battery_level", "BatteryLevel", {"battery_level": 0.75}, 0.75),
+        ("/battery_level", "BatteryLevel", {"battery_level": 1}, 1.0),
+        ("/estop", "EmergencyStop", {"enabled": True}, True),
+        ("/gps_accuracy", "GpsAccuracy", {"accuracy": 42.0}, 42.0),
+        ("/signal_strength", "SignalStrength", {"strength": 0}, "NOT_CONNECTED"),
+        ("/signal_strength", "SignalStrength", {"strength": 1}, "CONNECTED"),
+        ("/signal_strength", "SignalStrength", {"strength": 2}, "LOW_SIGNAL"),
+        ("/temperature", "Temperature", {"temperature": -3.5}, -3.5),
     ],
 )
 async def test_a_message_is_a_reading_of_its_signal(
@@ -31,7 +31,7 @@ async def test_a_message_is_a_reading_of_its_signal(
 ) -> None:
     send(robot, topic, fields)
 
-    assert robot.interface.heard[topic].type == f"gem_state_msgs/msg/{type_name}"
+    assert robot.interface.heard[topic].type == f"pilothouse_msgs/msg/{type_name}"
     view = robot.supervisor.core.signal(topic.removeprefix("/"))
     assert view.value == value
     assert view.source == SENDER.label

@@ -82,9 +82,9 @@ def test_all_are_of_the_own_node_and_nothing_is_latched() -> None:
         name: (topics[name].type, topics[name].node, topics[name].of_a_node, topics[name].latched)
         for name in ("/system_state", "/task_planner_status", "/diagnostics")
     } == {
-        "/system_state": ("gem_state_msgs/msg/SystemStateStamped", "pilothouse", False, False),
+        "/system_state": ("pilothouse_msgs/msg/SystemState", "pilothouse", False, False),
         "/task_planner_status": (
-            "gem_state_msgs/msg/TaskPlannerStatus",
+            "pilothouse_msgs/msg/TaskStatus",
             "pilothouse",
             False,
             False,

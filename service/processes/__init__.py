@@ -1,0 +1,1 @@
+"""Runs the processes of nodes, as the core decides."""
