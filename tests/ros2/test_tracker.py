@@ -26,18 +26,16 @@ async def test_a_goal_is_canceled_and_goes_on_from_its_target_index(
         ended = await on.client.ended("first")
 
         assert ended == ("canceled", "canceled")
-        assert on.client.of("first", "canceling") == [True]
+        await on.watch.stands()
         assert on.watch.commands[-1][0] == 0.0
-        assert abs(on.watch.speed_mps) < 0.05
-        reached = on.client.of("first", "feedback")[-1][0]
+        reached = int(on.watch.pose[0]) + 1
 
         on.client.send("second", 15, start_index=reached)
         ended = await on.client.ended("second")
 
         assert ended == ("succeeded", "")
         indices = [index for index, _ in on.client.of("second", "feedback")]
-        # The vehicle may have passed one more while its last feedback was on its way.
-        assert min(indices) in (reached, reached + 1)
+        assert min(indices) == reached
         assert on.client.of("second", "feedback")[-1][1] == pytest.approx(1.0, abs=0.05)
         assert on.watch.pose == pytest.approx((15.0, 0.0), abs=0.5)
         await on.watch.stands()
@@ -69,7 +67,7 @@ async def test_a_vehicle_that_falls_silent_is_stopped_and_its_goal_aborted(
 
         await on.watch.parameters.set("vehicle", "odometry", False)
 
-        assert await on.client.ended("goal") == ("aborted", "no pose of the vehicle for 0.3 s")
+        assert await on.client.ended("goal") == ("aborted", "no pose of the vehicle for 2 s")
         assert on.watch.commands[-1][0] == 0.0
         await on.watch.parameters.set("vehicle", "odometry", True)
         await on.watch.stands()

@@ -9,6 +9,7 @@ from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from service.ros.graph.graph import Lane, Message, Qos
@@ -264,10 +265,12 @@ async def street(
     """Run a vehicle, a tracker and a client, which has found the action."""
     async with AsyncExitStack() as stack:
         enter = stack.enter_async_context
+        robot = Path(stack.enter_context(TemporaryDirectory())) / "robot.yaml"
+        # A busy machine delays messages.
+        robot.write_text("driving: {pose_stale_after_s: 2.0}\n")
         await enter(running(*example("vehicle")))
-        drives = await enter(
-            running(*COMMAND, "tracker", "--tracker", tracker, environment=interfaces)
-        )
+        options = ("--tracker", tracker, "--robot", str(robot))
+        drives = await enter(running(*COMMAND, "tracker", *options, environment=interfaces))
         client = await enter(running(sys.executable, str(CLIENT), ACTION, environment=interfaces))
         watch = Watch(link)
         await watch.there()
