@@ -54,6 +54,8 @@ NOT_OF_THE_ENVIRONMENT = shutil.ignore_patterns(
     "mrecords.py",
     "polynomial",
     "testing",
+    # Of pygments, with which rich could colour source code.
+    "lexers",
     # Modules of C that only the tests of numpy import.
     "_*_tests.*.so",
     "_simd.*.so",

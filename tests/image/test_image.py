@@ -72,6 +72,15 @@ def test_the_example_loop_is_driven(service: ServiceInContainer) -> None:
     assert cancelled.is_success
 
 
+def test_the_monitor_draws_the_robot(box: Container, service: ServiceInContainer) -> None:
+    program = image_config()["Entrypoint"]
+
+    code, said = box.run([*program, "monitor", "--once", "--url", service.url])
+
+    assert code == 0, said
+    assert "drive_base" in said
+
+
 def test_a_simulation_runs_in_the_process_that_is_kept_for_it(service: ServiceInContainer) -> None:
     told = httpx.post(f"{service.url}/simulations", json={"until_s": 2}, headers=BEARER, timeout=30)
 

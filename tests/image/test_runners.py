@@ -1,9 +1,9 @@
 """The runners of docker/ with a real engine: podman, as docker/with_podman_here.sh sets it up."""
 
 import os
-import shutil
 import signal
 import subprocess
+from collections.abc import Iterator
 
 import httpx
 import pytest
@@ -18,12 +18,15 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
-def engine() -> None:
-    """Skip where podman is not set up."""
+@pytest.fixture
+def engine() -> Iterator[None]:
+    """Skip where podman is not set up; afterwards, end what a failed test left running."""
     if "CONTAINERS_STORAGE_CONF" not in os.environ:
         pytest.skip("podman is not set up; see `make test-image`")
-    assert shutil.which("podman") is not None
+    yield
+    subprocess.run(
+        ["podman", "rm", "--force", "--all", "--time", "0"], capture_output=True, check=True
+    )
 
 
 def containers() -> list[str]:

@@ -33,8 +33,10 @@ def test_once_is_the_whole_picture_as_plain_text() -> None:
     assert (code, errors) == (0, "")
     assert "\x1b" not in output
     lines = [line.split() for line in output.splitlines()]
-    assert ["actuation", "active.PERFORMANCE", "active(*)", "PERFORMANCE(*)"] in lines
-    assert ["drive_base", "active.FAST", "active", "FAST(*)"] in lines
+    cells = [[cell.strip() for cell in line.split("|")] for line in output.splitlines()]
+    assert ["actuation", "active", "active(*)", "PERFORMANCE", "PERFORMANCE(*)"] in cells
+    assert ["drive_base", "active", "active", "FAST", "FAST(*)"] in cells
+    assert ["Model:", "actuation.yaml", running.url] == lines[1][:3]
     assert ["battery_level", "100", "%", "now", "ok"] in lines
     assert all(len(line) <= 80 for line in output.splitlines())
 

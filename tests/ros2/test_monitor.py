@@ -15,7 +15,8 @@ from tests.ros2.support.monitor import MODEL, Monitor, monitor, table_of
 from tests.ros2.support.service import NodeProcess, RosRobot, Shown, node, ros_robot
 from tests.support.process import run
 
-pytestmark = pytest.mark.ros2
+# Several processes start one after the other, each of which imports rclpy.
+pytestmark = [pytest.mark.ros2, pytest.mark.timeout(180)]
 
 LIFECYCLE_TOOL = Path(__file__).parent / "support" / "lifecycle_tool.py"
 PERFORMANCE: Shown = {

@@ -97,7 +97,8 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--command-type",
         choices=COMMAND_TYPES,
-        help=f"default: as in the robot file, else {COMMAND_TYPES[0]}",
+        metavar="TYPE",
+        help=f"one of {', '.join(COMMAND_TYPES)}; default: as in the robot file, else the first",
     )
     parser.add_argument(
         "--log-level", default="info", choices=("debug", "info", "warning", "error")

@@ -23,7 +23,7 @@ from domain.state_and_mode import PartName, part_name
 from service.live_faults import LiveFaults
 from service.supervisor import Supervisor
 
-router = APIRouter(prefix="/simulated", tags=["simulations"], route_class=JsonRoute)
+router = APIRouter(prefix="/simulated", tags=["simulation"], route_class=JsonRoute)
 
 NodePath = Annotated[str, Path(description="Name as in the model file; it may contain slashes")]
 

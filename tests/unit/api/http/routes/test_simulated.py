@@ -101,3 +101,26 @@ async def test_a_fault_is_on_record(robot: HttpRobot) -> None:
 
     written = (await robot.get("/events?kind=audit.write"))["items"]
     assert [event["data"]["path"] for event in written] == ["/simulated/nodes/drive_base"]
+
+
+async def test_a_scenario_sets_faults_by_requests_as_well(robot: HttpRobot) -> None:
+    body = {
+        "until_s": 3,
+        "steps": [
+            {
+                "t_s": 1,
+                "request": {
+                    "method": "PATCH",
+                    "path": "/simulated/nodes/drive_base",
+                    "body": {"fault": "die"},
+                },
+            },
+            {"t_s": 3, "expect": {"events": {"node.unreachable": 1}}},
+        ],
+    }
+
+    answer = (await robot.http.post("/simulations", json=body)).json()
+
+    assert answer["refusals"] == []
+    assert [each["differences"] for each in answer["expectations"]] == [[]]
+    assert (await robot.get("/nodes/drive_base"))["reachable"] is True, "the live one is untouched"
