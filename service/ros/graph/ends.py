@@ -8,8 +8,9 @@ from service.ros.graph.crossing import Crossing
 from service.ros.graph.graph import Fields, Message
 from service.ros.graph.sending import Sender, send_or_tell
 
-DRAINED = 50
-"""Most messages of a topic that are taken in one go; then other topics have their turn."""
+DRAINED = 8
+"""Most messages of a topic that are taken in one go. With 50, a storm of reports took so much of
+the interpreter that an emergency stop waited for it."""
 
 
 class Drain:
