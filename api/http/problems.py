@@ -63,6 +63,7 @@ from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
 from service.recorded_pieces import MomentNotRecordedError, NothingRecordedError
 from service.replayed_robot import RecordingError, ReplayDiffersError
+from service.ros.interface.task_services import NoWaypointFolderError
 from service.start_task import StartTaskError
 from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
 
@@ -104,6 +105,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,
     RefusedError: HTTPStatus.CONFLICT,
+    NoWaypointFolderError: HTTPStatus.CONFLICT,
     IllegalTransitionError: HTTPStatus.CONFLICT,
     BlockedError: HTTPStatus.CONFLICT,
     OutdatedReadingError: HTTPStatus.CONFLICT,

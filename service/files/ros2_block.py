@@ -182,8 +182,6 @@ class NavigationBlock(SettingsBlock):
     """Full name of the action, such as /navigate_waypoints."""
     type: ActionType = "pilothouse_msgs/action/NavigateWaypoints"
     """Type of the action. FollowPath of Nav2 carries no speed: it drives at its own."""
-    frame_id: Annotated[str, Field(min_length=1, max_length=100)] = "map"
-    """Frame of the waypoints, for FollowPath."""
     accepted_within_s: Deadline = 1.0
     """Time in which a goal has to be accepted or rejected, in s."""
     silent_for_s: Deadline = 1.0

@@ -57,7 +57,7 @@ class Ros2Backend:
         navigation = robot.ros2.navigation
         self._navigation: NavigationClient | None = None
         if navigation is not None:
-            self._navigation = NavigationClient(navigation, graph, clock)
+            self._navigation = NavigationClient(navigation, robot.vehicle.frame_id, graph, clock)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
         self._delivery = Delivery(room, clock)
 

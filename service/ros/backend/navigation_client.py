@@ -67,9 +67,19 @@ class _Goal:
 class NavigationClient:
     """A `NavigationBackend` for one action of a ROS 2 graph."""
 
-    def __init__(self, settings: NavigationBlock, graph: RosGraph, clock: Clock) -> None:
-        """Prepare; `start` joins the graph."""
+    def __init__(
+        self, settings: NavigationBlock, frame_id: str, graph: RosGraph, clock: Clock
+    ) -> None:
+        """Prepare; `start` joins the graph.
+
+        Args:
+            settings: Which action, and its deadlines.
+            frame_id: Frame of the waypoints.
+            graph: Where the controller is.
+            clock: Of the service.
+        """
         self._settings = settings
+        self._frame_id = frame_id
         self._type = NAVIGATION_TYPES[settings.type]
         self._graph = graph
         self._clock = clock
@@ -144,10 +154,10 @@ class NavigationClient:
 
     async def _drive(self, goal: _Goal) -> None:
         """Send a goal, and tell what becomes of it."""
-        command, settings = goal.command, self._settings
+        command = goal.command
 
         def make() -> Fields:
-            return {"goal_id": _uuid(goal.id), "goal": self._type.goal(command, settings)}
+            return {"goal_id": _uuid(goal.id), "goal": self._type.goal(command, self._frame_id)}
 
         try:
             response = await self._send_goal.call_large(make, _ACCEPTED_S)

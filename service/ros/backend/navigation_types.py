@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from domain.commands import SendGoal
-from service.files.ros2_block import NavigationBlock
 from service.ros.graph.graph import Fields, Message
 
 Progress: TypeAlias = tuple[int, float]
@@ -17,15 +16,15 @@ Progress: TypeAlias = tuple[int, float]
 class NavigationType:
     """How one type of action says what the core says."""
 
-    goal: Callable[[SendGoal, NavigationBlock], Fields]
-    """Returns the fields of a goal."""
+    goal: Callable[[SendGoal, str], Fields]
+    """Returns the fields of a goal whose waypoints are in a frame."""
     progress: Callable[[Message, SendGoal], Progress]
     """Returns what a feedback says of a goal."""
     failure: Callable[[Message], str]
     """Returns why a result is no success; empty: it says nothing against one."""
 
 
-def _waypoints_goal(command: SendGoal, _: NavigationBlock) -> Fields:
+def _waypoints_goal(command: SendGoal, _: str) -> Fields:
     rows = command.path.waypoints.tolist()
     return {
         "waypoints": [{"x_m": x, "y_m": y, "yaw_rad": yaw} for x, y, yaw in rows],
@@ -42,9 +41,9 @@ def _waypoints_failure(result: Message) -> str:
     return "" if result.success else result.message or "it gave no reason"
 
 
-def _path_goal(command: SendGoal, settings: NavigationBlock) -> Fields:
+def _path_goal(command: SendGoal, frame_id: str) -> Fields:
     """Return the rest of the path, since FollowPath has no index to begin with."""
-    header = {"frame_id": settings.frame_id}
+    header = {"frame_id": frame_id}
     rows = command.path.waypoints[command.start_index :].tolist()
     poses = [
         {

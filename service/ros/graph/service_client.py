@@ -54,9 +54,10 @@ class ServiceClient:
             TimeoutError: There was none in time, or the link is closed.
             InvalidValueError: The fields do not fit the request type of the service.
         """
+        await self._turnstile.wait_for_turn()
+        # Filled in its turn, since fifty requests are made at once.
         message = self._kind.Request()
         fill(message, request)
-        await self._turnstile.wait_for_turn()
         self._check_open()
         return await self._response_to(self._client.call_async(message), within_s)
 

@@ -45,7 +45,7 @@ class World:
         self.clock = ManualClock()
         self.graph = FakeGraph(self.clock)
         self.server = FakeActionServer(self.graph, ACTION)
-        self.client = NavigationClient(SETTINGS, self.graph, self.clock)
+        self.client = NavigationClient(SETTINGS, "map", self.graph, self.clock)
         self.heard: list[ControllerMessage] = []
         self.client.start(self.heard.append)
 
@@ -126,7 +126,7 @@ async def test_a_type_that_is_not_installed_is_an_error_at_the_start() -> None:
     clock = ManualClock()
     graph = FakeGraph(clock, missing=("pilothouse_msgs/action/NavigateWaypoints_SendGoal",))
     with pytest.raises(UnknownTypeError, match="pilothouse_msgs"):
-        NavigationClient(SETTINGS, graph, clock).start(print)
+        NavigationClient(SETTINGS, "map", graph, clock).start(print)
 
 
 # --- a goal --------------------------------------------------------------------------------------

@@ -6,20 +6,16 @@ import pytest
 
 from domain.commands import SendGoal
 from domain.identifiers import GoalId
-from service.files.ros2_block import NavigationBlock
 from service.ros.backend.navigation_types import NAVIGATION_TYPES
 from tests.support.paths import straight
 
 WAYPOINTS = NAVIGATION_TYPES["pilothouse_msgs/action/NavigateWaypoints"]
 FOLLOW_PATH = NAVIGATION_TYPES["nav2_msgs/action/FollowPath"]
 COMMAND = SendGoal(GoalId(1), straight(), 0, 18, "stanley", 2.0)
-SETTINGS = NavigationBlock.model_validate(
-    {"action": "/follow_path", "type": "nav2_msgs/action/FollowPath", "frame_id": "odom"}
-)
 
 
 def test_waypoints_go_whole_with_the_one_to_begin_with() -> None:
-    fields = WAYPOINTS.goal(COMMAND, SETTINGS)
+    fields = WAYPOINTS.goal(COMMAND, "odom")
 
     assert len(fields["waypoints"]) == 21
     assert (fields["start_index"], fields["speed_mps"]) == (18, 2.0)
@@ -39,7 +35,7 @@ def test_a_result_without_success_is_a_failure(success: bool, message: str, fail
 
 
 def test_nav2_gets_the_rest_of_the_path_in_the_frame_of_the_robot_file() -> None:
-    path = FOLLOW_PATH.goal(COMMAND, SETTINGS)["path"]
+    path = FOLLOW_PATH.goal(COMMAND, "odom")["path"]
 
     assert path["header"] == {"frame_id": "odom"}
     assert [pose["pose"]["position"]["x"] for pose in path["poses"]] == [18.0, 19.0, 20.0]
