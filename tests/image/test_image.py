@@ -68,14 +68,15 @@ def test_the_example_loop_is_driven(service: ServiceInContainer) -> None:
     given = httpx.post(f"{service.url}/tasks", content=track, headers=headers, timeout=30)
     cancelled = httpx.delete(f"{service.url}/tasks/current", headers=BEARER)
 
-    assert given.status_code == 202, given.text
+    assert given.status_code == 201, given.text
     assert cancelled.is_success
 
 
 def test_the_monitor_draws_the_robot(box: Container, service: ServiceInContainer) -> None:
-    program = image_config()["Entrypoint"]
+    command = [*image_config()["Entrypoint"], "monitor", "--once", "--url", service.url]
 
-    code, said = box.run([*program, "monitor", "--once", "--url", service.url])
+    with box.start(command, environment={"PILOTHOUSE_TOKEN": TOKEN}) as monitor:
+        code, said = monitor.ended()
 
     assert code == 0, said
     assert "drive_base" in said
