@@ -38,10 +38,13 @@ class Drain:
     def hear(self, message: Message) -> None:
         """Take a message, and those that have arrived with it."""
         self._hear(message)
+        handle = self._handle
         # The receiving thread may be faster than the call that makes the subscription.
-        for _ in range(DRAINED if self._handle is not None else 0):
-            with self._handle:
-                taken = self._handle.take_message(self._kind, False)
+        if handle is None:
+            return
+        for _ in range(DRAINED):
+            with handle:
+                taken = handle.take_message(self._kind, False)
             if taken is None:
                 return
             self._hear(taken[0])
