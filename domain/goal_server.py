@@ -23,7 +23,7 @@ from domain.paths.path import Path
 from domain.tasks.settings import TaskSettings
 from domain.tasks.task_planner import check_cruise
 from domain.tasks.vehicle_watch import VehicleWatch
-from domain.timebase import Duration, Instant, seconds
+from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.tracking.pace import PERIOD
 from domain.vehicle import VehicleLimits
 
@@ -120,6 +120,7 @@ class GoalServer:
         tasks: TaskSettings,
         navigation: NavigationSettings,
         controller: str,
+        supervised_within: Duration,
     ) -> None:
         """Begin without a goal, and without a pose.
 
@@ -128,11 +129,13 @@ class GoalServer:
             tasks: From where a path may begin, and when a pose is stale.
             navigation: Limits at which a goal is aborted, and speed limits.
             controller: Name of the tracker.
+            supervised_within: A supervisor that was heard and is silent for longer is gone.
         """
         self._watch = VehicleWatch(tasks, Outbox())
         self._navigation = Navigation(limits, navigation, self._watch)
         self._stop_within = navigation.no_progress_for
         self._controller = controller
+        self._supervised_within = supervised_within
         self._current: _Current | None = None
         self._count = 0
         self._trouble = ""
@@ -140,6 +143,8 @@ class GoalServer:
         self._stop_at: Instant | None = None
         """When speed 0 is commanded next; None: the vehicle is left to itself, or driven."""
         self._stop_until: Instant = 0
+        self._supervised_at: Instant | None = None
+        """When the supervisor was heard last; None: there is none, and nobody misses it."""
 
     @property
     def goal(self) -> GoalId | None:
@@ -153,6 +158,8 @@ class GoalServer:
         current = self._current
         if current is not None:
             self._end(current, current.closes_as or GoalOutcome.ABORTED, REPLACED)
+        if self._is_unsupervised(now):
+            self._supervised_at = None
         self._count += 1
         goal = GoalId(self._count)
         self._current = _Current(goal, asked.path.length_m)
@@ -188,6 +195,10 @@ class GoalServer:
         self._watch.check(report)
         self._watch.take(report, now)
 
+    def hear_supervisor(self, now: Instant) -> None:
+        """Learn that somebody supervises the vehicle: without them, nobody would stop it."""
+        self._supervised_at = now
+
     def note_drive(self, status: DriveStatus, now: Instant) -> None:
         """Learn whether commands reach the vehicle; a goal is aborted if they do not."""
         self._trouble = "" if status.available else f"commands do not arrive: {status.reason}"
@@ -212,14 +223,16 @@ class GoalServer:
 
     def wake_at(self) -> Instant | None:
         """Return when something is due next; None: not before there is new input."""
-        step = self._navigation.wake_at()
-        if step is None or self._stop_at is None:
-            return self._stop_at if step is None else step
-        return min(step, self._stop_at)
+        due = (self._navigation.wake_at(), self._stop_at)
+        return min((at for at in due if at is not None), default=None)
 
     def advance(self, now: Instant) -> tuple[GoalMessage, ...]:
         """Return what is due by `now`: commands, how far the goal has come, and how it ended."""
         self._watch.pass_time(now)
+        current = self._current
+        if current is not None and current.closes_as is None and self._is_unsupervised(now):
+            limit_s = to_seconds(self._supervised_within)
+            self.abort(f"no word of the supervisor for {limit_s:g} s", now)
         for message in self._navigation.advance(now):
             self._take(message, now)
         self._judge_stop(now)
@@ -227,6 +240,11 @@ class GoalServer:
         return told
 
     # --- inside ----------------------------------------------------------------------------------
+
+    def _is_unsupervised(self, now: Instant) -> bool:
+        """Tell whether there was a supervisor, and it is gone; control steps look often enough."""
+        heard_at = self._supervised_at
+        return heard_at is not None and now - heard_at > self._supervised_within
 
     def _take(self, message: Drive | GoalFeedback | GoalResult, now: Instant) -> None:
         """Take what navigation says; of a goal that has ended, only its commands count."""

@@ -23,6 +23,7 @@ from api.serving.process_log import log_to
 from api.serving.stop_signals import StopSignals
 from api.terminal_text import say
 from domain.errors import InvalidModelError
+from domain.timebase import seconds
 from service.clock import MonotonicClock
 from service.files.model_file import EXAMPLE, load_model
 from service.files.robot_file import InvalidRobotFileError, RobotSettings, read_robot_file
@@ -34,6 +35,8 @@ from service.ros.tracker_node import TrackerNode, TrackerSettings
 ODOMETRY, COMMAND = "/odom", "/cmd_vel"
 COMMAND_TYPE: CommandType = "geometry_msgs/msg/Twist"
 _STDERR = 2
+_SUPERVISED_WITHIN = seconds(1.0)
+"""Pilothouse publishes its state at 20 Hz."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +94,7 @@ def settings_of(options: TrackerOptions) -> TrackerSettings:
         topic=options.command or topic,
         type=options.command_type or kind,
     )
+    asked = robot.ros2.navigation
     return TrackerSettings(
         options.action,
         options.controller,
@@ -98,6 +102,7 @@ def settings_of(options: TrackerOptions) -> TrackerSettings:
         robot.to_vehicle_limits(),
         robot.to_task_settings(),
         robot.to_navigation_settings(),
+        _SUPERVISED_WITHIN if asked is None else seconds(asked.silent_for_s),
     )
 
 

@@ -185,7 +185,8 @@ class NavigationBlock(SettingsBlock):
     accepted_within_s: Deadline = 1.0
     """Time in which a goal has to be accepted or rejected, in s."""
     silent_for_s: Deadline = 1.0
-    """Time without feedback, in s, after which the goal is taken back."""
+    """Time without feedback, in s, after which the goal is taken back. `pilothouse tracker` ends
+    its goal after a silence of `/system_state` for as long."""
     taken_back_within_s: Deadline = 1.0
     """Time in which the end of a goal that was taken back has to be confirmed, in s, besides the
     time to stop at `driving.braking_mps2`."""

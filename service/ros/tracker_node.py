@@ -30,11 +30,13 @@ from service.clock import Clock
 from service.files.ros2_block import Ros2Block
 from service.pacing import Pacer
 from service.ros.backend.vehicle import RosVehicle
-from service.ros.graph.graph import AcceptedGoal, Lane, Message, RosGraph, UnknownTypeError
+from service.ros.graph.graph import AcceptedGoal, Lane, Message, Qos, RosGraph, UnknownTypeError
 from service.running import run_forever
 
 NODE = "tracker"
 NAVIGATE_WAYPOINTS = "pilothouse_msgs/action/NavigateWaypoints"
+SUPERVISED_BY = "/system_state"
+"""Topic that Pilothouse publishes as long as it supervises."""
 
 _TOLD: Duration = seconds(0.2)
 _STOP_WITHIN: Duration = seconds(3.0)
@@ -56,10 +58,12 @@ class TrackerSettings:
     limits: VehicleLimits
     tasks: TaskSettings
     navigation: NavigationSettings
+    supervised_within: Duration
+    """A supervisor that was heard and is silent for longer is gone."""
 
 
 class TrackerNode:
-    """Offers the action as soon as commands reach the vehicle, and drives one goal at a time."""
+    """Offers the action once there is a pose and commands arrive, and drives one goal at a time."""
 
     def __init__(self, settings: TrackerSettings, graph: RosGraph, clock: Clock) -> None:
         """Prepare; `run` joins in.
@@ -73,11 +77,18 @@ class TrackerNode:
         self._graph = graph
         self._clock = clock
         self._server = GoalServer(
-            settings.limits, settings.tasks, settings.navigation, settings.controller
+            settings.limits,
+            settings.tasks,
+            settings.navigation,
+            settings.controller,
+            settings.supervised_within,
         )
         self._vehicle = RosVehicle(settings.topics, settings.limits, graph, clock, owner=NODE)
         self._pacer = Pacer[GoalMessage](self._server, clock)
         self._accepted: dict[GoalId, AcceptedGoal] = {}
+        self._arrive = False
+        """Whether commands reach the vehicle."""
+        self._has_pose = False
         self._is_offered = False
 
     async def run(self, stopping: asyncio.Event) -> None:
@@ -160,10 +171,12 @@ class TrackerNode:
         now = self._clock.now()
         if isinstance(message, VehicleReport):
             self._server.report(message, now)
-            return
-        self._server.note_drive(message, now)
-        self._pacer.touch()
-        if message.available and not self._is_offered:
+            self._has_pose = True
+        else:
+            self._server.note_drive(message, now)
+            self._pacer.touch()
+            self._arrive = message.available
+        if self._arrive and self._has_pose and not self._is_offered:
             self._offer()
 
     def _offer(self) -> None:
@@ -171,7 +184,13 @@ class TrackerNode:
         settings = self._settings
         node = self._graph.node(NODE, Lane.GATEWAY)
         node.serve_action(settings.action, NAVIGATE_WAYPOINTS, self)
+        node.subscribe(
+            SUPERVISED_BY, "pilothouse_msgs/msg/SystemState", Qos.SENSOR, _came, self._supervised
+        )
         log.info("ready: %s drives the goals of %s", settings.controller, settings.action)
+
+    def _supervised(self, _: bool) -> None:
+        self._server.hear_supervisor(self._clock.now())
 
     def _do(self, message: GoalMessage) -> None:
         match message:
@@ -188,6 +207,11 @@ class TrackerNode:
                     "message": message.message,
                 }
                 self._accepted.pop(message.goal).end(message.end, result)
+
+
+def _came(_: Message) -> bool:
+    """Take nothing from a message but that it came."""
+    return True
 
 
 _WORDS: Mapping[GoalOutcome, str] = MappingProxyType(

@@ -19,7 +19,7 @@ import pytest
 from service.ros.graph.graph import Lane, Qos
 from tests.ros2.support.links import Link
 from tests.ros2.support.street import ACTION, Running, Watch, example, running, soon
-from tests.support.process import COMMAND, service
+from tests.support.process import COMMAND, ServiceProcess, service
 
 # Most of it for the interfaces, which are built by the first test that needs them.
 pytestmark = [pytest.mark.ros2, pytest.mark.timeout(600)]
@@ -42,8 +42,11 @@ IS_ACTIVE = {ACCEPTED, EXECUTING, CANCELING}
 class Robot:
     """The robot as its operator and a ROS client see it."""
 
-    def __init__(self, link: Link, http: httpx.AsyncClient, tracker: Running) -> None:
+    def __init__(
+        self, link: Link, planner: ServiceProcess, http: httpx.AsyncClient, tracker: Running
+    ) -> None:
         self.watch = Watch(link)
+        self.planner = planner
         self._http = http
         self._tracker = tracker
         self.goals: tuple[int, ...] = ()
@@ -120,7 +123,7 @@ async def robot(
         )
         planner = stack.enter_context(service(*options, command=("env", *interfaces, *COMMAND)))
         http = await enter(httpx.AsyncClient(base_url=planner.url, timeout=60))
-        made = Robot(link, http, controller)
+        made = Robot(link, planner, http, controller)
         await made.watch.there()
         await made.becomes("IDLE", "NO_TASK")
         yield made
@@ -143,7 +146,7 @@ async def test_a_task_that_is_served_in_error_waits_and_is_driven_when_the_error
 
         await on.becomes("RUNNING", "RUNNING_TASK")
         await on.has_active_goals(1)
-        await on.watch.drives()
+        await on.watch.drives(on.told)
         assert on.start_indices == [0], "one goal"
 
 
@@ -173,7 +176,7 @@ async def test_an_error_during_the_drive_stops_the_vehicle_and_the_task_goes_on_
 
         await on.becomes("RUNNING", "RUNNING_TASK")
         await on.has_active_goals(1)
-        await on.watch.drives()
+        await on.watch.drives(on.told)
         assert on.start_indices == [0, reached], "one goal each"
         driven = next(i for i, (speed, _) in enumerate(on.watch.commands[stopped:]) if speed)
         assert {speed for speed, _ in on.watch.commands[stopped : stopped + driven]} <= {0.0}
@@ -184,3 +187,18 @@ async def test_an_error_during_the_drive_stops_the_vehicle_and_the_task_goes_on_
         assert SUCCEEDED in on.goals
         [done] = (await on.get("/tasks?limit=1"))["items"]
         assert done["status"] == "SUCCEEDED"
+
+
+async def test_a_planner_that_is_killed_leaves_no_vehicle_driving(
+    link: Link, interfaces: Sequence[str], tmp_path: Path
+) -> None:
+    async with robot(link, interfaces, tmp_path, "pure_pursuit") as on:
+        await on.serve(200)
+        await on.has_active_goals(1)
+        await on.watch.drives(on.told)
+
+        on.planner.kill()
+
+        await on.has_active_goals(0)
+        await on.watch.stands()
+        assert "no word of the supervisor for 5 s" in on.told()

@@ -63,7 +63,7 @@ async def test_a_vehicle_that_falls_silent_is_stopped_and_its_goal_aborted(
 ) -> None:
     async with street(link, interfaces) as on:
         on.client.send("goal", 100)
-        await on.watch.drives()
+        await on.watch.drives(on.told)
 
         await on.watch.parameters.set("vehicle", "odometry", False)
 
@@ -78,7 +78,7 @@ async def test_a_tracker_that_is_ended_stops_the_vehicle_first(
 ) -> None:
     async with street(link, interfaces) as on:
         on.client.send("goal", 100)
-        await on.watch.drives()
+        await on.watch.drives(on.told)
 
         on.tracker.signal(signal.SIGTERM)
 
@@ -95,7 +95,7 @@ async def test_a_tracker_that_is_killed_leaves_no_vehicle_driving(
         # Without its own timeout, so that it is the process of the commands that stops it.
         await on.watch.parameters.set("vehicle", "command_timeout", 1e6)
         on.client.send("goal", 100)
-        await on.watch.drives()
+        await on.watch.drives(on.told)
 
         on.tracker.signal(signal.SIGKILL)
 

@@ -24,6 +24,8 @@ Speed 0 is commanded before any of that is told, and when this process ends.
 
 It supervises nothing: no signals, no emergency stop. Who sends the goals does,
 such as: pilothouse serve MODEL --backend ros2 --robot FILE
+Once it has heard /system_state, a silence of 1 s (`navigation.silent_for_s` of
+the robot file) aborts the goal: nobody else would stop the vehicle.
 
 Source setup.bash of the ROS 2 distribution first, and the workspace that has
 pilothouse_msgs (examples/ros2).

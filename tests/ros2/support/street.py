@@ -160,6 +160,7 @@ class GoalClient:
         await soon(
             lambda: any(at > index for at, _ in self.of(goal, "feedback")),
             f"that {goal} passes waypoint {index}",
+            lambda: str(self.told[-5:]),
         )
 
     async def ended(self, goal: str) -> tuple[str, str]:
@@ -215,9 +216,9 @@ class Watch:
         """Wait until the vehicle is heard."""
         await soon(lambda: not math.isnan(self.speed_mps), "odometry")
 
-    async def drives(self) -> None:
-        """Wait until the vehicle drives."""
-        await soon(lambda: self.speed_mps > 1.0, "that the vehicle drives")
+    async def drives(self, told: Callable[[], str] = str) -> None:
+        """Wait until the vehicle drives; `told` returns what may explain why it does not."""
+        await soon(lambda: self.speed_mps > 1.0, "that the vehicle drives", told)
 
     async def stands(self) -> None:
         """Wait until the vehicle stands."""
@@ -251,6 +252,10 @@ class Street:
         self.watch = watch
         self.tracker = tracker
         self.client = client
+
+    def told(self) -> str:
+        """Return what the tracker and the client said."""
+        return f"{self.tracker.text}\n{self.client.told[-5:]}"
 
 
 def example(name: str) -> tuple[str, str]:

@@ -51,7 +51,9 @@ class Road:
         self.now: Instant = 0
         settings = VehicleSettings(pose or Pose(0.0, 0.0, 0.0), plant, LIMITS)
         self.vehicle = SimulatedVehicle(settings, 0)
-        self.server = GoalServer(LIMITS, TaskSettings(), NavigationSettings(), controller)
+        self.server = GoalServer(
+            LIMITS, TaskSettings(), NavigationSettings(), controller, seconds(1.0)
+        )
         self.odometry = True
         self.told: list[GoalMessage] = []
         self.stay(0.1)
@@ -333,6 +335,47 @@ def test_odometry_that_falls_silent_during_a_cancel_is_told() -> None:
     road.stay(0.5)
 
     assert road.ends() == [GoalEnded(begun, GoalOutcome.ABORTED, "there is no pose of the vehicle")]
+
+
+def test_a_supervisor_that_falls_silent_stops_the_vehicle_since_nobody_else_would() -> None:
+    road = Road()
+    road.server.hear_supervisor(road.now)
+    begun = road.begin(goal(100.0))
+    road.stay(0.9)
+    road.server.hear_supervisor(road.now)
+    road.stay(0.9)
+    assert road.ends() == []
+    assert road.speed_mps > 0.5
+
+    road.stay(0.3)
+
+    why = "no word of the supervisor for 1 s"
+    assert road.ends() == [GoalEnded(begun, GoalOutcome.ABORTED, why)]
+    road.stay(3)
+    assert road.speed_mps == 0.0
+
+
+def test_a_supervisor_that_is_gone_before_a_goal_is_not_missed() -> None:
+    road = Road()
+    road.server.hear_supervisor(road.now)
+    road.stay(5)
+
+    begun = road.begin(goal())
+    road.stay(15)
+
+    assert road.ends() == [GoalEnded(begun, GoalOutcome.SUCCEEDED)]
+
+
+def test_a_goal_that_is_being_canceled_ends_as_canceled_without_a_supervisor() -> None:
+    road = Road()
+    road.server.hear_supervisor(road.now)
+    begun = road.begin(goal(100.0))
+    road.stay(0.9)
+
+    road.cancel(begun)
+    road.stay(3)
+
+    assert [ended.end for ended in road.ends()] == [GoalOutcome.CANCELED]
 
 
 def test_a_goal_is_aborted_when_commands_do_not_arrive() -> None:

@@ -13,6 +13,7 @@ from domain.navigation import NavigationSettings
 from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import Plant, VehicleSettings
 from domain.tasks.settings import TaskSettings
+from domain.timebase import seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits
 from service.files.ros2_block import CommandBlock, CommandType, OdometryBlock, Ros2Block
 from service.ros.graph.graph import Lane, UnknownTypeError
@@ -33,6 +34,7 @@ SETTINGS = TrackerSettings(
     LIMITS,
     TaskSettings(),
     NavigationSettings(),
+    seconds(1.0),
 )
 
 
@@ -171,6 +173,20 @@ async def test_without_odometry_a_goal_is_aborted_and_says_so() -> None:
     assert goal.ended[0] is GoalOutcome.ABORTED
     assert "no pose" in goal.ended[1]["message"]
     assert street.commanded_mps == 0.0
+
+
+async def test_a_goal_is_aborted_once_the_state_of_the_robot_is_heard_no_more() -> None:
+    async with tracker() as street:
+        await street.stay(0.1)
+        street.graph.publish("/system_state", {"state": 0})
+        goal = street.send(100.0)
+        await street.stay(0.9)
+        assert goal.ended is None
+        await street.stay(0.3)
+
+    assert goal.ended is not None
+    assert goal.ended[0] is GoalOutcome.ABORTED
+    assert "no word of the supervisor" in goal.ended[1]["message"]
 
 
 async def test_at_the_end_the_vehicle_is_stopped_and_the_goal_aborted() -> None:
