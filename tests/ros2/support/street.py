@@ -217,8 +217,14 @@ class Watch:
         await soon(lambda: not math.isnan(self.speed_mps), "odometry")
 
     async def drives(self, told: Callable[[], str] = str) -> None:
-        """Wait until the vehicle drives; `told` returns what may explain why it does not."""
-        await soon(lambda: self.speed_mps > 1.0, "that the vehicle drives", told)
+        """Wait until the vehicle drives, and its commands are heard.
+
+        Args:
+            told: Returns what may explain why it does not.
+        """
+        await soon(
+            lambda: self.speed_mps > 1.0 and bool(self.commands), "that the vehicle drives", told
+        )
 
     async def stands(self) -> None:
         """Wait until the vehicle stands."""
