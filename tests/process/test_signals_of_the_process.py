@@ -28,7 +28,10 @@ async def driving() -> AsyncIterator[tuple[ServiceProcess, ClientConnection]]:
     with service() as running:
         async with connect(running.stream_url) as client:
             async with httpx.AsyncClient(base_url=running.url) as http:
-                await http.post("/tasks", content=LINE, headers={"Content-Type": "text/csv"})
+                taken = await http.post(
+                    "/tasks", content=LINE, headers={"Content-Type": "text/csv"}
+                )
+                assert taken.status_code == httpx.codes.CREATED, taken.text
             while _commanded(json.loads(await client.recv())) < 0.2:
                 pass
             yield running, client

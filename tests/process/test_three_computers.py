@@ -66,10 +66,10 @@ def test_who_asks_for_devices_sees_what_becomes_of_them(
     assert run(supervisor, "mode", "mobile_manipulation", "TRANSPORT")[0] == 0
 
     base.kill()
-    wait_for(lambda: run(supervisor, "devices")[0] == 1)
+    wait_for(lambda: "base    lost " in run(supervisor, "devices")[1])
 
-    listed = run(supervisor, "devices")[1]
-    assert "base    lost " in listed
+    code, listed = run(supervisor, "devices")
+    assert code == 1
     assert "arm     connected" in listed
     part = httpx.get(f"{supervisor.url}/nodes/drive_base").json()
     assert (part["device"], part["reachable"]) == ("base", False)
