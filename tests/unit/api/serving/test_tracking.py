@@ -1,8 +1,9 @@
 """`pilothouse tracker`, with a graph in memory in the place of ROS 2."""
 
-import os
+import asyncio
 import signal
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,6 +22,15 @@ from tests.support.ros_graph import FakeGraph, FakeRosNode
 LINK = "service.ros.graph.link"
 TWIST: CommandType = "geometry_msgs/msg/Twist"
 ACKERMANN: CommandType = "ackermann_msgs/msg/AckermannDriveStamped"
+ODOMETRY = {
+    "pose": {
+        "pose": {
+            "position": {"x": 0.0, "y": 0.0, "z": 0.0},
+            "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
+        }
+    },
+    "twist": {"twist": {"linear": {"x": 0.0}, "angular": {"z": 0.0}}},
+}
 GIVEN = TrackerOptions("stanley", "/navigate_waypoints")
 ROBOT = f"""\
 vehicle: {{wheelbase_m: 0.5, plant: {{braking_mps2: 3.0}}}}
@@ -40,6 +50,23 @@ def robot(tmp_path: Path) -> Path:
 
 def use(graph: FakeGraph, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, LINK, SimpleNamespace(RosLink=lambda: graph))
+
+
+def when_offered(graph: FakeGraph, monkeypatch: pytest.MonkeyPatch, do: Callable[[], None]) -> None:
+    """Do something once the action is offered to clients; a vehicle says where it is."""
+    offer, subscribe = FakeRosNode.serve_action, FakeRosNode.subscribe
+
+    def offered(self: FakeRosNode, *given: object) -> None:
+        offer(self, *given)  # type: ignore[arg-type]
+        do()
+
+    def subscribed(self: FakeRosNode, topic: str, *given: object) -> None:
+        subscribe(self, topic, *given)  # type: ignore[arg-type]
+        if topic == "/odom":
+            asyncio.get_running_loop().call_soon(graph.publish, topic, ODOMETRY)
+
+    monkeypatch.setattr(FakeRosNode, "serve_action", offered)
+    monkeypatch.setattr(FakeRosNode, "subscribe", subscribed)
 
 
 # --- what is driven ------------------------------------------------------------------------------
@@ -82,13 +109,7 @@ def test_it_runs_until_a_signal_and_says_what_it_does(
 ) -> None:
     graph = FakeGraph(ManualClock())
     use(graph, monkeypatch)
-    offer = FakeRosNode.serve_action
-
-    def offered(self: FakeRosNode, *given: object) -> None:
-        offer(self, *given)  # type: ignore[arg-type]
-        os.kill(os.getpid(), signal.SIGTERM)
-
-    monkeypatch.setattr(FakeRosNode, "serve_action", offered)
+    when_offered(graph, monkeypatch, lambda: signal.raise_signal(signal.SIGTERM))
 
     assert track(GIVEN) == SUCCEEDED
 
@@ -128,13 +149,7 @@ def test_it_ends_when_the_connection_to_ros_2_fails(
 ) -> None:
     graph = FakeGraph(ManualClock())
     use(graph, monkeypatch)
-    offer = FakeRosNode.serve_action
-
-    def offered(self: FakeRosNode, *given: object) -> None:
-        offer(self, *given)  # type: ignore[arg-type]
-        graph.fail()
-
-    monkeypatch.setattr(FakeRosNode, "serve_action", offered)
+    when_offered(graph, monkeypatch, graph.fail)
 
     assert track(GIVEN) == FAILED
 
