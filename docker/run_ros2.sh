@@ -35,17 +35,36 @@ else
     RUN=("$ENGINE" run --rm "${CONFINED[@]}" "${USER_OPTIONS[@]}" --network host --ipc host
         --env ROS_DOMAIN_ID --env ROS_AUTOMATIC_DISCOVERY_RANGE)
     node() {
-        exec "${RUN[@]}" --volume "$ROOT/examples/ros2/nodes:/nodes:ro" \
+        exec "${RUN[@]}" --name "$(name_of "$1")" --volume "$ROOT/examples/ros2/nodes:/nodes:ro" \
             --entrypoint /opt/pilothouse/bin/ros2_entrypoint.sh \
             pilothouse-ros2 python3 "/nodes/$1.py"
     }
-    supervisor() { exec "${RUN[@]}" pilothouse-ros2 "${SERVE[@]}"; }
+    supervisor() { exec "${RUN[@]}" --name "$(name_of supervisor)" pilothouse-ros2 "${SERVE[@]}"; }
 fi
+name_of() { echo "pilothouse-$$-$1"; }
+
+# Ends them all. What does not end in time is killed: a middleware may hang when a peer has died.
+PATIENCE_S=10
+end_all() {
+    local tries
+    # shellcheck disable=SC2046
+    kill $(jobs -p) 2>/dev/null || true
+    for ((tries = 0; tries < 10 * PATIENCE_S; tries++)); do
+        [ -n "$(jobs -pr)" ] || return 0
+        sleep 0.1
+    done
+    echo "${0##*/}: killing what has not ended within $PATIENCE_S s" >&2
+    # A container outlives the program that started it.
+    [ -n "$HERE" ] || "$ENGINE" rm --force "$(name_of drive_base)" "$(name_of manipulator)" \
+        "$(name_of supervisor)" >/dev/null 2>&1 || true
+    # shellcheck disable=SC2046
+    kill -KILL $(jobs -pr) 2>/dev/null || true
+    wait
+}
 
 trap 'exit 130' INT
 trap 'exit 143' TERM
-# shellcheck disable=SC2046
-trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT
+trap end_all EXIT
 node drive_base &
 node manipulator &
 supervisor &

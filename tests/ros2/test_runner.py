@@ -29,9 +29,21 @@ def test_the_death_of_a_node_ends_all() -> None:
     with running("run_ros2.sh", "--here") as robot:
         robot.wait_until_ready()
         robot.wait_for_nodes()
-        robot.kill_one("manipulator.py")
+        robot.signal_one("manipulator.py", signal.SIGKILL)
         code = robot.ended()
         left = robot.left_behind()
 
     assert code != 0
     assert left == []
+
+
+def test_a_node_that_does_not_end_is_killed() -> None:
+    with running("run_ros2.sh", "--here") as robot:
+        robot.wait_until_ready()
+        robot.signal_one("manipulator.py", signal.SIGSTOP)
+        code = robot.ended_by(signal.SIGTERM)
+        left = robot.left_behind()
+        said = robot.said()
+
+    assert (code, left) == (143, [])
+    assert "killing what has not ended" in said

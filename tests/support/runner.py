@@ -100,14 +100,14 @@ class Runner:
         """Wait for the end of the runner; return its exit code."""
         return self._process.wait(PATIENCE_S)
 
-    def kill_one(self, argument: str) -> None:
-        """Kill the one process that was started by the runner with such a last argument."""
+    def signal_one(self, argument: str, number: signal.Signals) -> None:
+        """Send a signal to the one process that the runner started with such a last argument."""
         (pid,) = (
             pid
             for pid in self.left_behind()
             if Path(f"/proc/{pid}/cmdline").read_text().rstrip("\0").endswith(argument)
         )
-        os.kill(pid, signal.SIGKILL)
+        os.kill(pid, number)
 
     def left_behind(self) -> list[int]:
         """Return the processes of its session, to which all belong that it started."""
