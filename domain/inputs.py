@@ -227,6 +227,8 @@ class PeerStops:
 
     Whoever is not dealt with, or not yet, can engage a stop, but end none except its own.
     """
+    is_dealt_with: bool = False
+    """Whether the process that is dealt with said so, too."""
 
 
 @dataclass(frozen=True, slots=True)

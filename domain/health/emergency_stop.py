@@ -140,7 +140,7 @@ class EmergencyStop(Concern):
         Whoever is not dealt with can stop the robot, but ends no stop except its own.
         """
         computer, before = told.computer, tuple(self._stops.of(told.computer))
-        if told.ended is None:
+        if told.ended is None or told.is_dealt_with:
             self._stops.note_told(computer)
         after = {stop.id: stop for stop in told.stops}
         for stop in after.values():

@@ -112,7 +112,7 @@ class Peer:
         self._settings = settings
         self._others = Others(settings.lost)
         self._former = deque[Incarnation](maxlen=_MAX_FORMER)
-        self._began_at = start
+        self._listens_since = self._began_at = start
         """When the process that is dealt with was heard first."""
         self._acknowledged = 0
         """Version of our stops that it has taken in."""
@@ -259,9 +259,14 @@ class Peer:
             if process not in present and process not in self._others:
                 self.stops.replace(process)
 
-    def stops_news(self) -> StopsNews | None:
-        """Return its stops, if they are news; None: they are not."""
-        return self.stops.news(is_all=self.was_connected)
+    def stops_news(self, now: Instant) -> StopsNews | None:
+        """Return its stops, if they are news; None: they are not.
+
+        Another process of its name, which has a stop and is not dealt with, may be heard later than
+        the one that is.
+        """
+        is_all = self.was_connected and now >= self._listens_since + self._settings.lost
+        return self.stops.news(is_dealt_with=self.was_connected, is_all=is_all)
 
     def beat(self, said: Said, now: Instant) -> Beat:
         """Return a beat for it; the next is due a period later."""

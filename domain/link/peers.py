@@ -87,7 +87,7 @@ class Peers:
                 return None
         heard = peer.hear(beat, now)
         self._wakes[peer.name] = peer.wake_at()
-        self._tell_stops(peer, gathering)
+        self._tell_stops(peer, now, gathering)
         if heard is not Heard.NOTHING and beat.releases and peer.is_renewed_by(beat, now):
             released = self.stops.take_release(beat.releases)
             if released:
@@ -102,7 +102,7 @@ class Peers:
             said = [each for each in beat.passed_on if each.computer == peer.name]
             if said and peer.name != beat.sender:
                 peer.take_passed_on(said, now)
-                self._tell_stops(peer, gathering)
+                self._tell_stops(peer, now, gathering)
 
     def tell(self, command: TellStops | AskRelease, now: Instant, gathering: Gathering) -> None:
         """Take a command of the core that concerns stops; what follows is said at once."""
@@ -111,7 +111,7 @@ class Peers:
                 self.beat(self, now, gathering)
         elif (peer := self._peers.get(command.computer)) is not None:
             peer.ask_release(command.stops)
-            self._tell_stops(peer, gathering)
+            self._tell_stops(peer, now, gathering)
             if peer.releases:
                 self.beat((peer,), now, gathering)
 
@@ -125,8 +125,8 @@ class Peers:
             gathering.send(peer.name, peer.beat(self._says(peer, now), now))
             self._wakes[peer.name] = peer.wake_at()
 
-    def _tell_stops(self, peer: Peer, gathering: Gathering) -> None:
-        news = peer.stops_news()
+    def _tell_stops(self, peer: Peer, now: Instant, gathering: Gathering) -> None:
+        news = peer.stops_news(now)
         if news is not None:
             self.stops_changes += 1
             gathering.give(PeerStops(peer.name, *news))

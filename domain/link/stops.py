@@ -56,6 +56,15 @@ class _StopsOf:
         self.is_certain = False
         """Whether it was dealt with, or known to live, when it said so."""
         self.stops: dict[StopId, PeerStop] = {}
+        self.had: dict[StopId, None] = {}
+        """All that it said it has, the latest at the end; it may have ended some since."""
+
+    def note(self, said: Iterable[EngagedStop]) -> None:
+        """Note which stops it has, or had."""
+        for stop in said:
+            self.had[stop.id] = self.had.pop(stop.id, None)
+        while len(self.had) > MAX_STOPS:
+            del self.had[next(iter(self.had))]
 
 
 class StopsNews(NamedTuple):
@@ -63,6 +72,7 @@ class StopsNews(NamedTuple):
 
     stops: tuple[PeerStop, ...]
     ended: tuple[StopId, ...] | None
+    is_dealt_with: bool
 
 
 class HeardStops:
@@ -79,7 +89,7 @@ class HeardStops:
         self._by: dict[Incarnation, _StopsOf] = {}
         self._ended = deque[StopId](maxlen=MAX_STOPS)
         """Stops of processes that were replaced: they may arrive late."""
-        self._told: tuple[frozenset[StopId], bool] = (frozenset(), False)
+        self._told = (frozenset[StopId](), False, False)
 
     @property
     def ids(self) -> frozenset[StopId]:
@@ -119,8 +129,9 @@ class HeardStops:
         known.heard_at = now
         known.is_certain |= lives or is_dealt_with
         said = stops[:MAX_STOPS]
+        known.note(said)
         if is_dealt_with and len(self._by) > 1:
-            self._take_over(process, known.stops.keys() | {stop.id for stop in said})
+            self._take_over(process, known.had.keys())
         if version <= known.version:
             return
         old = () if lives or is_dealt_with else self._ended
@@ -172,20 +183,22 @@ class HeardStops:
         """Return all processes that said something."""
         return tuple(self._by)
 
-    def news(self, *, is_all: bool) -> StopsNews | None:
+    def news(self, *, is_dealt_with: bool, is_all: bool) -> StopsNews | None:
         """Return all stops, and which ended, if that is news; None: it is not.
 
         Args:
-            is_all: Whether the computer itself is dealt with: what an earlier run of this computer
-                knew of it, and it does not say, has ended.
+            is_dealt_with: Whether the computer itself told its stops.
+            is_all: Whether all who live told theirs: what an earlier run of this computer knew,
+                and nobody says, has ended.
         """
         ids = self.ids
-        known, was_all = self._told
-        if (ids, is_all) == (known, was_all):
+        known, *_ = before = self._told
+        self._told = (ids, is_dealt_with, is_all)
+        if self._told == before:
             return None
-        self._told = (ids, is_all)
         stops = tuple(stop for of in self._by.values() for stop in of.stops.values())
-        return StopsNews(stops[:MAX_STOPS], None if is_all else tuple(sorted(known - ids)))
+        ended = None if is_all else tuple(sorted(known - ids))
+        return StopsNews(stops[:MAX_STOPS], ended, is_dealt_with)
 
     def _take_over(self, process: Incarnation, ids: Set[StopId]) -> None:
         """Let stops be those of the process that is dealt with, which its store brought back."""

@@ -71,9 +71,11 @@ class Robot:
         now: int,
         *stops: PeerStop,
         ended: tuple[StopId, ...] | None = None,
+        is_dealt_with: bool = False,
     ) -> list[str]:
         """Hear which stops another computer has, and which of them ended; None: all others."""
-        self.stop.take_stops_of_peer(PeerStops(computer, stops, ended), now)
+        told = PeerStops(computer, stops, ended, is_dealt_with)
+        self.stop.take_stops_of_peer(told, now)
         return self._told()
 
     def hear_release(self, computer: ComputerName, now: int, *stops: str) -> list[str]:

@@ -432,6 +432,7 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
         ),
         PeerStops(computer=SUPERVISOR, stops=(), ended=(StopId("supervisor-a5a5-3"),)),
         PeerStops(computer=SUPERVISOR, stops=(), ended=None),
+        PeerStops(computer=SUPERVISOR, stops=(), ended=(), is_dealt_with=True),
     ),
     "stops_released": (
         StopsReleased(stops=(StopId("arm-0f0f-3"),), computer=SUPERVISOR),

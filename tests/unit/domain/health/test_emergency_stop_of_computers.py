@@ -61,7 +61,10 @@ def test_whoever_is_not_dealt_with_stops_the_robot_and_releases_only_its_own_sto
 
     assert robot.hear(ARM, 10, ended=(StopId("arm-2"),)) == ["emergency_stop.peer_released"]
     assert [stop.id for stop in robot.stop.view().stops] == ["arm-1"]
-    assert robot.hear(ARM, 11)[0] == "emergency_stop.peer_released", "the arm itself has no stop"
+    assert robot.hear(ARM, 11, ended=(), is_dealt_with=True) == []
+    assert [stop.id for stop in robot.stop.view().stops] == ["arm-1"], "another may have it"
+    assert robot.stop.view().not_heard == ()
+    assert robot.hear(ARM, 12)[0] == "emergency_stop.peer_released", "the arm itself has no stop"
 
 
 def test_whoever_is_not_dealt_with_releases_what_it_engaged_itself() -> None:

@@ -6,6 +6,7 @@ from domain.commands import AskRelease
 from domain.computers import SUPERVISOR, ComputerName, DeviceState, StopId
 from domain.inputs import PeerStops, StopsReleased
 from domain.link.messages import Beat
+from domain.timebase import seconds
 from tests.support.linked_pair import ARM, BASE, TERMS, LinkedRobot, Process
 
 
@@ -53,6 +54,8 @@ def test_a_beat_that_is_lost_delays_a_stop_by_one_beat_also_between_devices() ->
 
 def test_a_stop_is_given_to_the_core_once_and_again_when_it_ends() -> None:
     robot = connected()
+    robot.run(1)
+    before = len(robot.supervisor.inputs)
     robot.engage(robot.base, "b1")
     robot.run(5)
     robot.engage(robot.base)
@@ -60,10 +63,10 @@ def test_a_stop_is_given_to_the_core_once_and_again_when_it_ends() -> None:
 
     told = [
         [stop.id for stop in given.stops]
-        for _, given in robot.supervisor.inputs
+        for _, given in robot.supervisor.inputs[before:]
         if isinstance(given, PeerStops) and given.computer == BASE
     ]
-    assert told == [[], ["b1"], []]
+    assert told == [["b1"], []]
 
 
 def test_a_stop_holds_while_its_computer_cannot_be_heard() -> None:
@@ -140,13 +143,36 @@ def test_a_stop_is_taken_from_whom_the_robot_file_does_not_have() -> None:
     assert [peer.name for peer in robot.supervisor.machine.peers] == [BASE]
 
 
-def test_before_a_computer_is_dealt_with_what_was_known_of_it_stays() -> None:
+def test_what_an_earlier_run_knew_of_a_computer_ends_once_all_who_live_could_be_heard() -> None:
     robot = LinkedRobot((BASE,))
     robot.engage(robot.base, "b2")
-    robot.run(2)
+    robot.run(3)
 
-    told = [given for _, given in robot.supervisor.inputs if isinstance(given, PeerStops)]
-    assert [given.ended for given in told] == [(), None]
+    told = [(at, given) for at, given in robot.supervisor.inputs if isinstance(given, PeerStops)]
+    (first, _), (connected_at, _), (whole_at, _) = told
+    assert first <= connected_at < seconds(0.3)
+    assert seconds(1.5) <= whole_at < seconds(1.7)
+    assert [given.is_dealt_with for _, given in told] == [False, True, True]
+    assert [given.ended for _, given in told] == [(), (), None]
+
+
+def test_a_second_supervisor_is_heard_before_what_an_earlier_run_knew_of_its_stop_ends() -> None:
+    robot = LinkedRobot((BASE,))
+    robot.kill(robot.base)
+    other = robot.start(SUPERVISOR)
+    robot.engage(other, "s9")
+    robot.run(3)
+    other.is_hidden = True
+    base = robot.start(BASE)
+    robot.run(1.2)
+    is_connected = base.status().state is DeviceState.CONNECTED
+    other.is_hidden = False
+    robot.run(5)
+
+    told = [given for _, given in base.inputs if isinstance(given, PeerStops)]
+    (whole,) = (given for given in told if given.ended is None)
+    assert is_connected
+    assert [stop.id for stop in whole.stops] == ["s9"]
 
 
 def test_a_device_that_is_not_dealt_with_releases_its_own_stop() -> None:

@@ -74,26 +74,60 @@ def test_a_stop_is_news_once_and_counts_from_when_it_was_engaged() -> None:
     listener = Listener()
     listener.hears(A, 1, "s1", age_s=4)
 
-    assert listener.stops.news(is_all=True) == (own("s1", since_s=6), None)
+    first = listener.stops.news(is_dealt_with=True, is_all=True)
     listener.hears(A, 2, "s1", age_s=4.2)
-    assert listener.stops.news(is_all=True) is None
+
+    assert first == (own("s1", since_s=6), None, True)
+    assert listener.stops.news(is_dealt_with=True, is_all=True) is None
 
 
 def test_it_is_news_that_a_computer_has_no_stop_once_it_is_dealt_with() -> None:
     stops = HeardStops()
 
-    assert stops.news(is_all=False) is None
-    assert stops.news(is_all=True) == ((), None)
+    assert stops.news(is_dealt_with=False, is_all=False) is None
+    assert stops.news(is_dealt_with=True, is_all=False) == ((), (), True)
+
+
+def test_it_is_news_that_all_who_live_told_their_stops() -> None:
+    stops = HeardStops()
+    stops.news(is_dealt_with=True, is_all=False)
+
+    assert stops.news(is_dealt_with=True, is_all=True) == ((), None, True)
+    assert stops.news(is_dealt_with=True, is_all=True) is None
 
 
 def test_before_that_only_what_was_heard_can_end() -> None:
     listener = Listener()
     listener.hears(X, 1, "x1", "x2")
-    first = listener.stops.news(is_all=False)
+    first = listener.stops.news(is_dealt_with=False, is_all=False)
     listener.hears(X, 2, "x2")
+    then = listener.stops.news(is_dealt_with=False, is_all=False)
 
-    assert first == (own("x1", "x2", since_s=10), ())
-    assert listener.stops.news(is_all=False) == (own("x2", since_s=10), ("x1",))
+    assert first == (own("x1", "x2", since_s=10), (), False)
+    assert then == (own("x2", since_s=10), ("x1",), False)
+
+
+def test_the_process_that_is_dealt_with_ended_what_it_had_before_it_was() -> None:
+    listener = Listener()
+    listener.hears(B, 1, "s1")
+    listener.stops.take(A, 1, engaged("s1"), seconds(11), lives=True, is_dealt_with=False)
+    listener.stops.take(A, 2, (), seconds(12), lives=True, is_dealt_with=False)
+    both_answer = listener.stops.ids
+    listener.stops.take(A, 2, (), seconds(13), lives=True, is_dealt_with=True)
+
+    assert both_answer == {"s1"}
+    assert listener.stops.ids == frozenset()
+
+
+def test_of_what_a_process_ended_a_bounded_number_is_remembered() -> None:
+    listener = Listener()
+    listener.hears(B, 1, "first", "last")
+    for version in range(MAX_STOPS):
+        said = engaged("first" if version == 0 else f"s{version}", "last")
+        listener.stops.take(A, version, said, seconds(11), lives=True, is_dealt_with=False)
+    listener.hears(A, MAX_STOPS)
+
+    assert listener.stops.ids == {"first"}
 
 
 def test_what_is_older_than_what_was_heard_is_no_news() -> None:
@@ -175,7 +209,7 @@ def test_many_impostors_are_bounded_and_keep_no_room_from_the_computer_itself() 
 
     assert len(listener.stops.processes()) == 9
     assert "s1" in listener.stops.ids
-    news = listener.stops.news(is_all=True)
+    news = listener.stops.news(is_dealt_with=True, is_all=True)
     assert news is not None
     assert len(news[0]) == MAX_STOPS
 
