@@ -26,7 +26,7 @@ class Paced(Protocol[MessageT_co]):
         ...
 
 
-AT_ONCE = 25
+AT_ONCE = 15
 """Messages delivered in one turn of the event loop."""
 
 

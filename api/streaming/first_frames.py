@@ -18,4 +18,5 @@ async def first_frames(server: StreamServer) -> str | None:
     frame = server.supervisor.frames.complete()
     if frame is None:
         return None
-    return f"[{server.encoder.hello(_ALL)},{server.encoder.frame(frame, 0, _ALL)}]"
+    state = server.encoder.frame(frame, 0, _ALL).decode()
+    return f"[{server.encoder.hello(_ALL)},{state}]"

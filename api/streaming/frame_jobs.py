@@ -59,4 +59,4 @@ def frame_of(wanted: WantedFrame) -> bytes:
     frame = robot.supervisor.frames.complete()
     if frame is None:
         raise MomentNotRecordedError("nothing was published then", ())
-    return StreamEncoder(robot.supervisor).frame(frame, 0, STATE_TOPICS).encode()
+    return StreamEncoder(robot.supervisor).frame(frame, 0, STATE_TOPICS)

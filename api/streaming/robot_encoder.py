@@ -136,27 +136,32 @@ class MemberCache(Generic[View]):
         # Two plain dictionaries: a pair for each of 10,000 parts would be looked through by every
         # garbage collection.
         self._views: dict[str, View] = {}
-        self._texts: dict[str, str] = {}
+        self._texts: dict[str, bytes] = {}
 
     def text(self, views: Mapping[Any, View]) -> str:
         """Return the object that holds these members."""
-        return f"{{{','.join(self._each(views))}}}"
+        return f"{{{self.members(views).decode()}}}"
+
+    def members(self, views: Mapping[Any, View]) -> bytes:
+        """Return these members without braces, as UTF-8.
+
+        The text of 10,000 parts with one character beyond ASCII would be encoded for 5 ms.
+        """
+        self.learn(self.new_ones(views.items()))
+        return b",".join([self._texts[name] for name in views])
 
     def new_ones(self, views: Iterable[tuple[str, View]]) -> Iterator[tuple[str, View]]:
         """Yield the members that are new or have changed."""
+        known = self._views.get
         for name, view in views:
-            if self._views.get(name) is not view:
+            if known(name) is not view:
                 yield name, view
 
     def learn(self, views: Iterable[tuple[str, View]]) -> None:
         """Encode members and cache their text."""
         for name, view in views:
             self._views[name] = view
-            self._texts[name] = f"{to_json(name).decode()}:{self._encode(view)}"
-
-    def _each(self, views: Mapping[Any, View]) -> Iterator[str]:
-        self.learn(self.new_ones(views.items()))
-        return (self._texts[name] for name in views)
+            self._texts[name] = b"%b:%b" % (to_json(name), self._encode(view).encode())
 
 
 class LatestCache(Generic[View]):

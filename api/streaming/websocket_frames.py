@@ -60,9 +60,9 @@ def connection_of(scope: Scope) -> Connection:
     return connection
 
 
-def text_frame(text: str) -> bytes:
-    """Return a text as the bytes of one WebSocket frame."""
-    data = text.encode()
+def text_frame(text: str | bytes) -> bytes:
+    """Return a text, which may be UTF-8 already, as the bytes of one WebSocket frame."""
+    data = text if isinstance(text, bytes) else text.encode()
     size = len(data)
     if size < _LENGTH_16:
         return bytes((_TEXT, size)) + data

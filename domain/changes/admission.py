@@ -26,6 +26,8 @@ ADVISORY = frozenset({UNREACHABLE, UNKNOWN_STATE, DEVICE_LOST})
 MAX_BLOCKERS = 100
 """Largest number of blockers of one request; more would not be read."""
 
+_MODES_KEPT = 8
+
 
 class ChangeAdmission:
     """Judges requests by the current facts about the nodes."""
@@ -53,6 +55,8 @@ class ChangeAdmission:
         self._guards = guards
         self._claims = claims
         self._goals = NodeGoals(model)
+        self._of_modes: dict[tuple[PartName, str], ChangeGoal] = {}
+        """The goals of requests for a mode that were judged last, the latest at the end."""
 
     def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
         """Return the goal of a request that may begin.
@@ -67,7 +71,7 @@ class ChangeAdmission:
         """
         if isinstance(request, TransitionRequest):
             self._check_legal(request, estop)
-        goal = goal_of(self._model, request, self._facts, self._goals)
+        goal = self.goal(request)
         blockers = self._blockers(request, goal, estop)
         if refuse(blockers):
             raise BlockedError(part_of(request), blockers)
@@ -75,12 +79,23 @@ class ChangeAdmission:
 
     def blockers(self, request: ChangeRequest, estop: Sequence[Blocker]) -> tuple[Blocker, ...]:
         """Return all blockers of a request, including the advisory ones."""
-        goal = goal_of(self._model, request, self._facts, self._goals)
-        return self._blockers(request, goal, estop)
+        return self._blockers(request, self.goal(request), estop)
 
     def goal(self, request: ChangeRequest) -> ChangeGoal:
-        """Return the goal of a request, whatever blocks it."""
-        return goal_of(self._model, request, self._facts, self._goals)
+        """Return the goal of a request, whatever blocks it.
+
+        What a mode means for the parts below is always the same, and on a large robot much.
+        """
+        if not isinstance(request, ModeRequest):
+            return goal_of(self._model, request, self._facts, self._goals)
+        key = (request.part, request.mode)
+        goal = self._of_modes.pop(key, None)
+        if goal is None:
+            goal = goal_of(self._model, request, self._facts, self._goals)
+            if len(self._of_modes) == _MODES_KEPT:
+                del self._of_modes[next(iter(self._of_modes))]
+        self._of_modes[key] = goal
+        return goal
 
     def goal_of_targets(self, targets: Mapping[PartName, StateAndMode]) -> ChangeGoal:
         """Return the goal that leads each of several parts to a target of its own."""

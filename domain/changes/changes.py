@@ -3,7 +3,6 @@
 What a change wants of its nodes is the work of `node_steps.py`.
 """
 
-from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Set
 from itertools import islice
 
@@ -169,7 +168,9 @@ class Changes:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._log.add(change)
         self._running[identity] = change
-        self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
+        self._parts.put_under(identity, goal.targets)
+        self._parts.put_under(identity, goal.nodes)
+        self._parts.put_under(identity, (part,))
         if is_asked:
             self._ask(change)
         self._outbox.keep(kept_of(change))
@@ -375,9 +376,7 @@ class Changes:
 
     def _drop(self, parts: Set[PartName], status: StepStatus, now: Instant) -> None:
         """Start no further step of nodes on their way, which may be of several changes."""
-        let_go: dict[ChangeId, list[PartName]] = defaultdict(list)
-        for node, identity in self._steps.drop_waiting(parts).items():
-            let_go[identity].append(node)
+        let_go = self._steps.drop_waiting(parts)
         for node in sorted(self._steps.on_their_way(parts)):
             identity, is_in_flight = self._steps.drop(node, status, now)
             self._log[identity].loose += is_in_flight

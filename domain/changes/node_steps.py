@@ -5,6 +5,7 @@ in parallel, each with at most one step in flight. A step in flight is never rec
 of its node waits until it ends or times out.
 """
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Set
 
 from domain.changes.plan import SetParameters, next_steps, presumed_steps
@@ -121,15 +122,16 @@ class NodeSteps:
             self.foresee(pursuit)
             self._advance(node, now)
 
-    def drop_waiting(self, parts: Set[PartName]) -> dict[PartName, ChangeId]:
+    def drop_waiting(self, parts: Set[PartName]) -> defaultdict[ChangeId, list[PartName]]:
         """Let those nodes among parts that wait for their turn not move at all.
 
         Returns:
-            The change of each of them, in the order in which they waited.
+            Them by their change, in the order in which they waited.
         """
-        dropped = {node: change.id for node, change in self._waiting.items() if node in parts}
-        for node in dropped:
-            del self._waiting[node]
+        waiting = self._waiting
+        dropped: defaultdict[ChangeId, list[PartName]] = defaultdict(list)
+        for node in [node for node in waiting if node in parts]:
+            dropped[waiting.pop(node).id].append(node)
         return dropped
 
     def drop(self, node: PartName, status: StepStatus, now: Instant) -> tuple[ChangeId, bool]:

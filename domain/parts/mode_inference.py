@@ -115,13 +115,12 @@ class ModeInference:
             UnknownPartError: A part is not in the model; no target was set.
         """
         # In bulk where it can be: there may be ten thousand.
-        for part in sorted(targets.keys() - self._actual.keys()):
-            raise UnknownPartError("part", part, self.model.parts)
-        for part, target in targets.items():
-            if target is None:
-                self._targets.pop(part, None)
-            else:
-                self._targets[part] = target
+        if not targets.keys() <= self._actual.keys():
+            unknown = min(targets.keys() - self._actual.keys())
+            raise UnknownPartError("part", unknown, self.model.parts)
+        self._targets.update(targets)  # type: ignore[arg-type]  # those without are taken out next
+        for part in [part for part, target in targets.items() if target is None]:
+            del self._targets[part]
         nodes = targets.keys() & self._wavering if self._wavering else ()
         changed = self._infer((*nodes, *(targets.keys() & self._systems.keys())))
         # In the order of the targets: in that of a set, what belongs together is far apart.

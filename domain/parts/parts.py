@@ -1,6 +1,6 @@
 """The parts as a concern of the core: reports of nodes, inferred states and targets."""
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import islice
 from types import MappingProxyType
@@ -187,9 +187,10 @@ class Parts(Concern):
 
     def let_go(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change no longer drives parts; parts of another change are not affected."""
-        driven = [part for part in parts if self._changes.get(part) == change]
+        changes = self._changes
+        driven = [part for part in parts if changes.get(part) == change]
         for part in driven:
-            del self._changes[part]
+            del changes[part]
         self.touch(driven)
 
     def expect_report(self, node: PartName, step: int) -> None:
@@ -258,7 +259,7 @@ class Parts(Concern):
         """Return the requested target of a part; None: there is none."""
         return self._targets.asked(part)
 
-    def asked_of(self, parts: Iterable[PartName]) -> dict[PartName, StateAndMode | None]:
+    def asked_of(self, parts: Collection[PartName]) -> dict[PartName, StateAndMode | None]:
         """Return the requested target of each of several parts."""
         return self._targets.asked_of(parts)
 

@@ -69,7 +69,8 @@ class Walk:
         """Let those parts of a system begin that wait for no other one."""
         scope, first = self._scope, inside
         if (links := scope.links.get(system)) is not None:
-            first = [part for part in inside if not links.before.get(part)]
+            before = links.before
+            first = [part for part in inside if part not in before or not before[part]]
         if scope.nodes.keys() >= set(first) and scope.model.shared_parts.isdisjoint(first):
             # Nodes of no other system begin in bulk: there may be ten thousand.
             self.begun.update(first)

@@ -402,3 +402,27 @@ def test_what_refuses_is_told_before_what_is_only_shown_in_the_order_of_the_node
     assert _codes(admission, PERFORMANCE) == ["FINALIZED", "UNKNOWN_STATE"]
     admission = _admission(S.FINALIZED, S.ERROR_PROCESSING)
     assert _codes(admission, PERFORMANCE) == ["ERROR_PROCESSING", "FINALIZED"]
+
+
+# --- what a mode means ---------------------------------------------------------------------------
+
+
+def test_what_a_mode_means_is_worked_out_once() -> None:
+    admission = _admission()
+
+    assert admission.goal(PERFORMANCE) is admission.goal(PERFORMANCE)
+
+
+def test_what_few_modes_mean_is_remembered_those_that_were_asked_for_last() -> None:
+    model = big_model(100)
+    claims = Claims(ModeInference(model))
+    admission = ChangeAdmission(model, {}, set(), unguarded(model), claims)
+    requests = [ModeRequest(system, "FAST") for system in list(model.systems)[:9]]
+    first = [admission.goal(request) for request in requests[:8]]
+    asked_again = admission.goal(requests[0])
+    admission.goal(requests[8])
+
+    assert asked_again is first[0]
+    assert admission.goal(requests[0]) is first[0]
+    assert admission.goal(requests[1]) == first[1]
+    assert admission.goal(requests[1]) is not first[1]
