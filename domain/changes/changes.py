@@ -164,13 +164,13 @@ class Changes:
             schedule = schedule.without_rollback()
         targets, took = dict(goal.targets), self._steps.durations
         change = Change(identity, part, request, targets, started_at, cause, schedule, took)
+        # Before others let them go: there may be ten thousand.
+        for driven in (goal.targets, goal.nodes, (part,)):
+            self._parts.put_under(identity, driven)
         if self._running or not self._steps.is_idle:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._log.add(change)
         self._running[identity] = change
-        self._parts.put_under(identity, goal.targets)
-        self._parts.put_under(identity, goal.nodes)
-        self._parts.put_under(identity, (part,))
         if is_asked:
             self._ask(change)
         self._outbox.keep(kept_of(change))
@@ -464,7 +464,8 @@ class Changes:
         self._deadlines.clear(change.id)
         self._guarded.drop(change)
         self._outbox.forget(KeptChange, change.id)
-        self._let_go(change, {change.part, *change.targets, *change.pursuits})
+        for driven in (change.targets, change.pursuits, (change.part,)):
+            self._let_go(change, driven)
         self._tell_end(change, now)
         self._log.pack(change)
 
@@ -482,7 +483,8 @@ class Changes:
     def _let_go(self, change: Change, parts: Iterable[PartName]) -> None:
         """Release the parts of an ended change, except nodes that it is still driving."""
         if change.status is not ChangeStatus.RUNNING:
-            self._parts.let_go(change.id, set(parts) - change.open)
+            still = change.open
+            self._parts.let_go(change.id, [p for p in parts if p not in still] if still else parts)
 
 
 _UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {

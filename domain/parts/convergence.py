@@ -138,8 +138,9 @@ class Convergence:
         moved, parents = set(parts), self._parents
         waiting = moved & self._rank.keys()
         renewed = self._renew_nodes([part for part in parts if part not in waiting])
-        above = [parents[node] for node in renewed if node in parents]
-        waiting.update(chain.from_iterable(above))
+        if len(waiting) < len(self._rank):
+            above = [parents[node] for node in renewed if node in parents]
+            waiting.update(chain.from_iterable(above))
         order = [self._rank[name] for name in waiting]
         heapify(order)
         while order:
