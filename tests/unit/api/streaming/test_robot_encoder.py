@@ -120,6 +120,15 @@ def test_members_are_joined_to_an_object_with_their_names_escaped() -> None:
     assert members.text({"a": View("1"), 'b"': View("2")}) == '{"a":1,"b\\"":2}'
 
 
+def test_members_of_a_frame_are_utf_8_without_braces() -> None:
+    members = MemberCache[View](lambda view: view.text)
+
+    assert members.members({"größe": View('"20 °C"'), "b": View("2")}) == (
+        '"größe":"20 °C","b":2'.encode()
+    )
+    assert members.members({}) == b""
+
+
 def test_a_view_that_is_the_same_is_not_made_again() -> None:
     made: list[View] = []
 

@@ -22,7 +22,7 @@ def test_a_client_reads_the_text_that_was_prepared(length: int) -> None:
 
 
 def test_a_frame_of_a_server_is_not_masked_and_so_the_same_for_all() -> None:
-    assert text_frame("state") == b"\x81\x05state"
+    assert text_frame("state") == text_frame(b"state") == b"\x81\x05state"
 
 
 def test_a_client_answers_the_ping_with_the_same_bytes() -> None:
