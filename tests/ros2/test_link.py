@@ -327,6 +327,31 @@ async def test_a_thread_that_breaks_down_is_not_silent(
     assert "out of file descriptors" in caplog.text
 
 
+async def test_a_middleware_that_hangs_keeps_nobody_from_ending(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    link = make_link()
+    link.node("pilothouse", Lane.GATEWAY)
+    goes_on, has_left = threading.Event(), threading.Event()
+    shut_down = link.context.try_shutdown
+
+    def hang() -> None:
+        goes_on.wait()
+        shut_down()
+        has_left.set()
+
+    monkeypatch.setattr(link.context, "try_shutdown", hang)
+    monkeypatch.setattr("service.ros.graph.link._LEAVE_S", BRIEFLY_S)
+
+    await link.close()
+    is_gone = has_left.is_set()
+    goes_on.set()
+
+    assert not is_gone
+    assert "the middleware hangs for 0.3 s" in caplog.text
+    assert await asyncio.to_thread(has_left.wait, WITHIN_S)
+
+
 async def test_after_it_is_closed_nothing_is_left_and_nothing_heard() -> None:
     heard: list[bool] = []
     cancelled = asyncio.Event()

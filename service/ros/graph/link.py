@@ -36,6 +36,7 @@ from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
 from domain.graph_terms import GraphFault
 from domain.vehicle import DriveCommand
+from service.call_thread import CallThread
 from service.ros.graph.action_goals import ActionGoals
 from service.ros.graph.conversion import find_type, require_field
 from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
@@ -79,6 +80,7 @@ _ARRIVALS_DEPTH = 5
 _LOOK_S = 1.0
 """Time between two looks at the publishers of a topic whose messages are counted."""
 _JOIN_S = 1.0
+_LEAVE_S = 3.0
 _SWITCH_S = 0.0005
 """For how long a lane may keep the interpreter from the event loop; by default it is 5 ms, each."""
 _URGENT = frozenset({Lane.SENSORS, Lane.GATEWAY})
@@ -180,11 +182,18 @@ class RosLink:
         raise GraphFailedError(self._reason)
 
     async def close(self) -> None:
-        """Leave the graph within 2 s; further calls do nothing."""
+        """Leave the graph within 3 s; further calls do nothing."""
         if self.crossing.closed:
             return
         await self.crossing.close()
-        await asyncio.to_thread(self._leave)
+        # In a daemon: a middleware that hangs must not keep the process from ending.
+        leaving = CallThread("leaving ROS 2")
+        try:
+            async with asyncio.timeout(_LEAVE_S):
+                await leaving.run(self._leave)
+        except TimeoutError:
+            _log.error("ROS 2 was not shut down: the middleware hangs for %g s", _LEAVE_S)
+        leaving.end()
 
     def _leave(self) -> None:
         threads: list[Sender | _Spinner] = [self.sender, *self._spinners.values()]
