@@ -68,6 +68,7 @@ def signal(name: str, value: object = 1.0, unit: str = "", **more: object) -> Js
         "received_at": AT,
         "stale": False,
         "error": None,
+        "source_fault": None,
         "pending": None,
         **more,
     }

@@ -137,7 +137,9 @@ def verdict_words(signal: Json, pending_s: float | None, *, is_live: bool = True
     """
     error, pending = signal["error"], signal["pending"]
     said = [error] if error else []
-    if signal["stale"] and error != "STALE_DATA":
+    if signal["source_fault"]:
+        said.append(f"no reading: {signal['source_fault']}")
+    elif signal["stale"] and error != "STALE_DATA":
         said.append("stale")
     if not is_live:
         return f"was {', '.join(said)}" if said else "no contact"

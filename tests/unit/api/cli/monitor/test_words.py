@@ -70,6 +70,15 @@ def test_that_a_signal_is_stale_is_said_once() -> None:
     assert words.verdict_words(stale, None) == "STALE_DATA"
 
 
+def test_why_a_source_gives_no_reading_is_said_instead() -> None:
+    lost = signal("x", stale=True, source_fault="no bus /dev/i2c-1")
+
+    assert words.verdict_words(lost, None) == "no reading: no bus /dev/i2c-1"
+    assert words.verdict_words({**lost, "error": "STALE_DATA"}, None) == (
+        "STALE_DATA, no reading: no bus /dev/i2c-1"
+    )
+
+
 def test_an_error_that_is_coming_is_counted_down() -> None:
     coming = signal("x", pending={"error": "GPS_LOST", "needs_s": 15.0})
 
