@@ -20,9 +20,12 @@ settings.register_profile(
 settings.register_profile("soak", deadline=None, max_examples=5_000, print_blob=True)
 settings.load_profile("soak" if os.environ.get("PILOTHOUSE_SOAK") == "1" else "default")
 
-# What is started in the background of a shell ignores Ctrl-C, and so would all that it starts.
+# What is started in the background of a shell ignores Ctrl-C and Ctrl-\, and so would all that it
+# starts.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if signal.getsignal(signal.SIGQUIT) is signal.SIG_IGN:
+    signal.signal(signal.SIGQUIT, signal.SIG_DFL)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -164,11 +164,7 @@ class Changes:
             schedule = schedule.without_rollback()
         targets, took = dict(goal.targets), self._steps.durations
         change = Change(identity, part, request, targets, started_at, cause, schedule, took)
-        # Before others let them go: there may be ten thousand.
-        for driven in (goal.targets, goal.nodes, (part,)):
-            self._parts.put_under(identity, driven)
-        if self._running or not self._steps.is_idle:
-            self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
+        self._take_parts(change, goal, now)
         self._log.add(change)
         self._running[identity] = change
         if is_asked:
@@ -356,6 +352,14 @@ class Changes:
     @property
     def _may_start(self) -> bool:
         return bool(self._steps.waiting) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
+
+    def _take_parts(self, change: Change, goal: ChangeGoal, now: Instant) -> None:
+        """Let a change drive its parts, and no other one any more."""
+        # Before the others let them go: there may be ten thousand.
+        for driven in (goal.targets, goal.nodes, (change.part,)):
+            self._parts.put_under(change.id, driven)
+        if self._running or not self._steps.is_idle:
+            self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
 
     def _supersede(self, parts: Set[PartName], newer: Change, now: Instant) -> None:
         """Drop pursuits of `parts`; a change that loses a node ends, but its other nodes go on."""

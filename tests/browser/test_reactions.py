@@ -22,7 +22,7 @@ carrier:
       __DEFAULT__: {drive: active}
       SLOW: {drive: active.SLOW}
     reactions:
-      LIMP: {when: "temperature > 40", action: mode, target: active.SLOW}
+      LIMP: {when: "temperature > 40", action: mode, target: active.SLOW, at_most: 100}
       HALT: {when: "temperature > 45", action: hold, until: acknowledged}
 drive:
   ros__parameters:
