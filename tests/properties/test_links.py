@@ -11,7 +11,8 @@ from typing import NamedTuple, TypeAlias
 import hypothesis.strategies as st
 from hypothesis import HealthCheck, given, settings
 
-from domain.computers import SUPERVISOR, ComputerName, DeviceState
+from domain.commands import AskRelease
+from domain.computers import SUPERVISOR, ComputerName, DeviceState, StopId
 from domain.inputs import DeviceStatus, NodeReport, OrderReceived, SupervisorStatus
 from domain.lifecycle import LifecycleState
 from domain.link.messages import NodeOrder
@@ -117,6 +118,8 @@ class Life:
             BASE: self.robot.base,
         }
         self.truth = UNCONFIGURED
+        self.forgotten: set[StopId] = set()
+        """Stops of the device of which its next process knew nothing."""
         self._presses = 0
 
     def live(self, for_s: float) -> None:
@@ -153,12 +156,19 @@ class Life:
                 robot.engage(self.alive[name], f"{name}-{self._presses}")
 
     def restart(self, name: ComputerName, down_s: float) -> None:
-        """Let a process end, and another one begin."""
+        """Let a process end, and another one begin, which knows nothing of it."""
+        if name == BASE:
+            self.forgotten |= self.engaged(name)
         self.robot.kill(self.alive[name])
         self.robot.run(down_s)
         self.alive[name] = self.robot.start(name)
         if name == BASE:
             self.truth = UNCONFIGURED
+
+    def engaged(self, name: ComputerName) -> set[StopId]:
+        """Return the stops that are engaged at a computer."""
+        stops = self.alive[name].machine.peers.stops
+        return {stop.id for stop in stops.told(self.robot.now)}
 
     def heal(self) -> None:
         """Let the network be whole, for 5 s."""
@@ -239,10 +249,20 @@ def test_when_the_network_is_whole_both_know_what_is(
     for process in (supervisor, device):
         assert process.status().state is DeviceState.CONNECTED
     assert _last_known(supervisor) == (life.truth.state, True)
-    engaged = {stop.id for stop in device.machine.peers.stops.told(life.robot.now)}
-    assert supervisor.stops_of(BASE) == engaged
-    engaged = {stop.id for stop in supervisor.machine.peers.stops.told(life.robot.now)}
-    assert device.stops_of(SUPERVISOR) == engaged
+    assert device.stops_of(SUPERVISOR) == life.engaged(SUPERVISOR)
+    # From here, a device that forgot its stop looks the same as one that took another one's name.
+    left = supervisor.stops_of(BASE) - life.engaged(BASE)
+    assert left <= life.forgotten
+    life.robot.tell(supervisor, AskRelease(BASE, tuple(map(StopId, left))))
+    life.robot.run(1)
+    assert supervisor.stops_of(BASE) == life.engaged(BASE)
+
+
+def test_what_a_device_forgot_ends_only_when_somebody_names_it() -> None:
+    life = told([(1.6, Press(BASE)), (0.4, Restart(BASE, 2.0))])
+    life.heal()
+
+    assert life.alive[SUPERVISOR].stops_of(BASE) == life.forgotten == {"base-1"}
 
 
 def _last_known(supervisor: Process) -> tuple[LifecycleState | None, bool]:
