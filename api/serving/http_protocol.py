@@ -13,6 +13,7 @@ from api.http.schemas.problem import Problem
 from api.serving.closings import Closings
 from api.serving.intake import Dispensable
 from api.serving.pieces import (
+    CHANGE_COST,
     HANDSHAKE_COST,
     HEAD_COST,
     INCOMPLETE,
@@ -21,6 +22,7 @@ from api.serving.pieces import (
     cost_of_bytes,
     cost_of_checking,
 )
+from api.serving.turns import Urgency
 
 MAX_HEAD_BYTES = 65_536
 MAX_HEADERS = 100
@@ -37,7 +39,9 @@ _CHUNKED_COST = 300
 """Of such a piece, which may hold a hundred chunks, in nominal microseconds."""
 _CHUNK_OVERHEAD = 8
 """Bytes that a byte of a body may take on the wire, if each is a chunk of its own."""
-_STOPS = (b"PUT /emergency_stop", b"PUT /holds/", b"DELETE /tasks/current", b"POST /signals")
+_STOPS = (b"PUT /emergency_stop", b"POST /signals")
+_PAUSES = (b"PUT /holds/", b"DELETE /tasks/current")
+_QUESTIONS = (b"GET ", b"HEAD ")
 _END_OF_HEAD = b"\r\n\r\n"
 _UPGRADE = b"\r\nupgrade:"
 # Their path is not known: they could not be parsed, or were not.
@@ -108,9 +112,7 @@ class HttpProtocol(HttpToolsProtocol):
         if waiting.count(b"\r\n", 0, end) > MAX_HEADERS:
             self._reject(_HEAD_TOO_LARGE)
             return INCOMPLETE
-        upgrades = _UPGRADE in waiting[:end].lower()
-        cost = HANDSHAKE_COST if upgrades else HEAD_COST
-        return Piece(end + len(_END_OF_HEAD), cost + cost_of_checking(end))
+        return Piece(end + len(_END_OF_HEAD), _cost_of_head(waiting[:end]) + cost_of_checking(end))
 
     def data_received(self, data: bytes) -> None:
         """Parse a piece; what is left of a lost connection is dropped."""
@@ -237,6 +239,14 @@ def _next_chunks(waiting: bytearray, before: int) -> Piece:
     return Piece(end + len(_END_OF_HEAD), _CHUNKED_COST + cost_of_checking(before + end))
 
 
-def is_stop(head: bytes | bytearray) -> bool:
-    """Tell whether a request may make the robot safe, or is a reading that does."""
-    return head.startswith(_STOPS)
+def _cost_of_head(head: bytearray) -> int:
+    if _UPGRADE in head.lower():
+        return HANDSHAKE_COST
+    return HEAD_COST if head.startswith(_QUESTIONS) else CHANGE_COST
+
+
+def urgency_of(head: bytes | bytearray) -> Urgency:
+    """Return how urgent a request is; it may be a reading that stops the robot."""
+    if head.startswith(_STOPS):
+        return Urgency.STOP
+    return Urgency.PAUSE if head.startswith(_PAUSES) else Urgency.REST

@@ -8,7 +8,7 @@ from typing import Protocol, cast
 
 from api.serving.paced_transport import PacedTransport
 from api.serving.pieces import LOSS_COST, READ_COST, Piece
-from api.serving.turns import RECENT_TURNS, Turns
+from api.serving.turns import RECENT_TURNS, Turns, Urgency
 
 log = logging.getLogger(__name__)
 
@@ -90,7 +90,7 @@ class Intake(asyncio.BufferedProtocol):
     While complete pieces wait nothing more is read, so that the kernel makes the client wait.
     """
 
-    is_urgent = False
+    urgency = Urgency.REST
     served_in = -RECENT_TURNS
     # Shared: it is emptied before the loop reads from another connection.
     _buffer = memoryview(bytearray(READ_BYTES))
@@ -100,7 +100,7 @@ class Intake(asyncio.BufferedProtocol):
         inner: Inner,
         turns: Turns,
         watcher: Watcher,
-        urgent: Callable[[bytes | bytearray], bool],
+        urgency_of: Callable[[bytes | bytearray], Urgency],
     ) -> None:
         """Prepare.
 
@@ -108,15 +108,15 @@ class Intake(asyncio.BufferedProtocol):
             inner: Takes what arrives.
             turns: Shared by all connections.
             watcher: Is told of beginning and end.
-            urgent: Tells whether what begins with these bytes is served first.
+            urgency_of: Tells how soon what begins with these bytes is served.
         """
         self.inner = inner
         self._turns = turns
         self._watcher = watcher
-        self._urgent = urgent
+        self._urgency_of = urgency_of
         self._waiting = bytearray()
-        self._in_stop = False
-        """Whether the request whose body is awaited is urgent."""
+        self._of_head = Urgency.REST
+        """Of the request whose body is awaited."""
         self._is_queued = False
         self._is_held = False
         """Whether the protocol wants no data."""
@@ -140,7 +140,7 @@ class Intake(asyncio.BufferedProtocol):
             self._turns.spend(self._end())
         elif not self._is_queued:
             self._is_queued = True
-            self.is_urgent = False
+            self.urgency = Urgency.REST
             self._turns.wait(self)
 
     def get_buffer(self, sizehint: int) -> memoryview:
@@ -225,15 +225,15 @@ class Intake(asyncio.BufferedProtocol):
         data = bytes(memoryview(self._waiting)[: piece.length])
         del self._waiting[: piece.length]
         if not self.inner.in_message:
-            self._in_stop = self._urgent(data)
+            self._of_head = self._urgency_of(data)
         self.inner.data_received(data)
         self._judge()
         return piece.cost
 
     def _judge(self) -> None:
-        """Note whether what waits is urgent, which a body is if its head was."""
+        """Note how urgent what waits is: a body as much as its head."""
         in_message = self.inner.in_message
-        self.is_urgent = self._in_stop if in_message else self._urgent(self._waiting)
+        self.urgency = self._of_head if in_message else self._urgency_of(self._waiting)
 
     def _queue(self) -> None:
         if self._waiting and not self._is_queued and not self._is_held:

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 HEAD_COST = 500
 """Of a request with its answer, in nominal microseconds."""
+CHANGE_COST = 1_500
+"""Of one that changes something, with what is written down of it."""
 HANDSHAKE_COST = 2_000
 """Of a handshake, with all that is made for the new client."""
 MESSAGE_COST = 200

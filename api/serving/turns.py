@@ -3,6 +3,7 @@
 import asyncio
 from collections import deque
 from collections.abc import Callable
+from enum import IntEnum
 from typing import Protocol
 
 from api.serving.pieces import READ_COST
@@ -13,11 +14,21 @@ RECENT_TURNS = 250
 """Whoever was served within so many turns has had its share, and comes after the others."""
 
 
+class Urgency(IntEnum):
+    """Who is served first."""
+
+    STOP = 0
+    """Asks for an emergency stop."""
+    PAUSE = 1
+    """Asks for something else that makes the robot safer. So do 50 clients that set holds."""
+    REST = 2
+
+
 class Work(Protocol):
     """A connection with bytes that wait."""
 
-    is_urgent: bool
-    """Whether it is served before all others."""
+    urgency: Urgency
+    """Of its next message."""
     served_in: int
     """Number of the turn in which its last message was complete."""
 
@@ -31,8 +42,8 @@ class Turns:
 
     Between two turns the loop runs everything else. Whoever was not served for a while comes before
     those that were, so that a single request does not wait behind many connections that send
-    without end, whether or not these wait for their answers; of both the urgent come first. Each
-    turn begins with one piece of another of these four queues, if somebody who is served before
+    without end, whether or not these wait for their answers; of both the more urgent come first.
+    Each turn begins with one piece of another of these queues, if somebody who is served before
     its first one began to wait later: so that none waits forever, and nobody is served twice
     before all who came earlier.
     """
@@ -44,10 +55,14 @@ class Turns:
             call_soon: Calls a function in the next turn of the loop.
         """
         self._call_soon = call_soon
-        self._queues: tuple[deque[tuple[int, Work]], ...] = (deque(), deque(), deque(), deque())
-        """Urgent, others; then the same of those that were served recently. Each with a number that
+        self._queues: tuple[deque[tuple[int, Work]], ...] = tuple(
+            deque() for _ in range(2 * len(Urgency))
+        )
+        """By urgency; then the same of those that were served recently. Each with a number that
         rises with when it began to wait."""
         self._waits = 0
+        self._rank = 0
+        """Of the queue whose first was served last because it had been overtaken."""
         self.number = 0
         """Of the current turn."""
         self._spent = 0
@@ -72,7 +87,7 @@ class Turns:
         """Let a connection wait that did not wait before."""
         had_share = self.number - work.served_in < RECENT_TURNS
         self._waits += 1
-        self._queues[2 * had_share + (not work.is_urgent)].append((self._waits, work))
+        self._queues[len(Urgency) * had_share + work.urgency].append((self._waits, work))
         self._call()
 
     def _call(self) -> None:
@@ -84,15 +99,22 @@ class Turns:
         self._is_called = False
         self._spent = 0
         self.number += 1
-        rank = self.number % len(self._queues)
-        if self._is_overtaken(rank):
-            self._serve(self._queues[rank])
+        self._serve_overtaken()
         while self._spent < BUDGET:
             queue = next(filter(None, self._queues), None)
             if queue is None:
                 return
             self._serve(queue)
         self._call()
+
+    def _serve_overtaken(self) -> None:
+        """Serve one of a queue whose first was overtaken; of several queues each in turn."""
+        count = len(self._queues)
+        for rank in (*range(self._rank + 1, count), *range(self._rank + 1)):
+            if self._is_overtaken(rank):
+                self._rank = rank
+                self._serve(self._queues[rank])
+                return
 
     def _is_overtaken(self, rank: int) -> bool:
         """Tell whether somebody who is served before a queue began to wait after its first."""

@@ -16,7 +16,7 @@ from api.app import close_workers
 from api.http.limits import ServiceLimits
 from api.serving.closings import Closings, ClosingsCollector
 from api.serving.connections import Connections
-from api.serving.http_protocol import HttpProtocol, is_stop
+from api.serving.http_protocol import HttpProtocol, urgency_of
 from api.serving.intake import Intake
 from api.serving.turns import Turns
 from api.serving.websocket_protocol import WebSocketProtocol
@@ -65,7 +65,7 @@ class WebServer(uvicorn.Server):
         def make() -> Intake:
             state = self.lifespan.state
             inner = HttpProtocol(self.config, self.server_state, state, self._closings)
-            return Intake(inner, turns, self._connections, is_stop)
+            return Intake(inner, turns, self._connections, urgency_of)
 
         self._connections.start(sockets or [], make)
         self._on_started()

@@ -10,7 +10,7 @@ from uvicorn.server import ServerState
 
 from api.serving.closings import Closings
 from api.serving.connections import Connections
-from api.serving.http_protocol import HttpProtocol, is_stop
+from api.serving.http_protocol import HttpProtocol, urgency_of
 from api.serving.intake import READ_BYTES, Intake
 from api.serving.turns import Turns
 from api.serving.websocket_protocol import WebSocketProtocol
@@ -157,7 +157,7 @@ class FloodedService:
     def make(self) -> Intake:
         inner = _CountedProtocol(self._config, self.state, {}, self.closings)
         inner.handed_on = self.handed_on
-        return Intake(inner, self._turns, self.connections, is_stop)
+        return Intake(inner, self._turns, self.connections, urgency_of)
 
 
 class Client:

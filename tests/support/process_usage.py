@@ -3,7 +3,7 @@
 import os
 from collections import defaultdict
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 _PROC = Path("/proc")
@@ -24,8 +24,9 @@ class ProcessUsage:
         """Return the processor time so far, of user and system."""
         ticks = 0
         for pid in self._pids():
-            fields = _stat(pid)
-            ticks += int(fields[11]) + int(fields[12])
+            with suppress(FileNotFoundError, ProcessLookupError):
+                fields = _stat(pid)
+                ticks += int(fields[11]) + int(fields[12])
         return ticks / _CLOCK_HZ
 
     def loop_cpu_s(self) -> float:
@@ -38,13 +39,17 @@ class ProcessUsage:
 
         In PSS a page that several processes have is divided among them.
         """
-        memory = {pid: _memory_mb(pid) for pid in self._pids()}
+        used: dict[int, tuple[dict[str, float], int]] = {}
+        for pid in self._pids():
+            # A worker may end at any moment.
+            with suppress(FileNotFoundError, ProcessLookupError):
+                used[pid] = _memory_mb(pid), int(_stat(pid)[17])
         return {
-            "RSS_mb": round(memory[self._pid]["Rss:"], 1),
-            "RSS_of_all_mb": round(sum(each["Rss:"] for each in memory.values()), 1),
-            "PSS_of_all_mb": round(sum(each["Pss:"] for each in memory.values()), 1),
-            "processes": len(memory),
-            "threads": sum(int(_stat(pid)[17]) for pid in memory),
+            "RSS_mb": round(used[self._pid][0]["Rss:"], 1),
+            "RSS_of_all_mb": round(sum(memory["Rss:"] for memory, _ in used.values()), 1),
+            "PSS_of_all_mb": round(sum(memory["Pss:"] for memory, _ in used.values()), 1),
+            "processes": len(used),
+            "threads": sum(threads for _, threads in used.values()),
         }
 
     def _pids(self) -> Iterator[int]:

@@ -8,9 +8,10 @@ from api.serving.http_protocol import (
     HEAD_TIMEOUT_S,
     MAX_HEAD_BYTES,
     UNREAD_TIMEOUT_S,
-    is_stop,
+    urgency_of,
 )
 from api.serving.intake import Dispensable
+from api.serving.turns import Urgency
 from tests.support.flooded_wire import Client, FloodedService
 from tests.support.waiting import until
 
@@ -97,19 +98,30 @@ async def test_a_connection_is_dispensable_between_its_requests() -> None:
 
 
 @pytest.mark.parametrize(
-    "request_line",
+    ("request_line", "urgency"),
     [
-        "PUT /emergency_stop",
-        "PUT /holds/operator",
-        "DELETE /tasks/current",
-        "POST /signals",
-        "POST /signals/estop",
+        ("PUT /emergency_stop", Urgency.STOP),
+        ("POST /signals", Urgency.STOP),
+        ("POST /signals/estop", Urgency.STOP),
+        ("PUT /holds/operator", Urgency.PAUSE),
+        ("DELETE /tasks/current", Urgency.PAUSE),
+        ("GET /emergency_stop", Urgency.REST),
+        ("GET /signals", Urgency.REST),
+        ("POST /tasks", Urgency.REST),
     ],
 )
-def test_what_may_make_the_robot_safe_comes_first(request_line: str) -> None:
-    assert is_stop(f"{request_line} HTTP/1.1\r\n".encode())
+def test_a_stop_comes_first_and_then_what_else_makes_the_robot_safer(
+    request_line: str, urgency: Urgency
+) -> None:
+    assert urgency_of(f"{request_line} HTTP/1.1\r\n".encode()) is urgency
 
 
-@pytest.mark.parametrize("request_line", ["GET /emergency_stop", "GET /signals", "POST /tasks"])
-def test_what_only_asks_waits_its_turn(request_line: str) -> None:
-    assert not is_stop(f"{request_line} HTTP/1.1\r\n".encode())
+async def test_a_request_that_changes_something_costs_more_than_one_that_asks() -> None:
+    client = FloodedService().connect()
+    protocol = client.intake.inner
+
+    asked = protocol.next_piece(bytearray(b"GET /holds HTTP/1.1\r\n\r\n"))
+    changes = protocol.next_piece(bytearray(b"PUT /holds/a HTTP/1.1\r\n\r\n"))
+
+    assert changes.cost > 2 * asked.cost
+    client.lose()

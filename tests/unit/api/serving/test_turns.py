@@ -1,4 +1,4 @@
-from api.serving.turns import BUDGET, RECENT_TURNS, Turns
+from api.serving.turns import BUDGET, RECENT_TURNS, Turns, Urgency
 from tests.support.flooded_wire import CountedLoop
 
 COST = 500
@@ -7,9 +7,9 @@ COST = 500
 class Client:
     """Has so many pieces that wait."""
 
-    def __init__(self, turns: Turns, pieces: int, *, is_urgent: bool = False) -> None:
+    def __init__(self, turns: Turns, pieces: int, urgency: Urgency = Urgency.REST) -> None:
         self.pieces = pieces
-        self.is_urgent = is_urgent
+        self.urgency = urgency
         self.served = 0
         self.served_in = -RECENT_TURNS
         self._turns = turns
@@ -30,9 +30,9 @@ class Clients:
         self.loop = CountedLoop()
         self.turns = Turns(self.loop.call_soon)
 
-    def wait(self, count: int, pieces: int, *, is_urgent: bool = False) -> list[Client]:
+    def wait(self, count: int, pieces: int, urgency: Urgency = Urgency.REST) -> list[Client]:
         """Let so many clients wait."""
-        clients = [Client(self.turns, pieces, is_urgent=is_urgent) for _ in range(count)]
+        clients = [Client(self.turns, pieces, urgency) for _ in range(count)]
         for client in clients:
             self.turns.wait(client)
         return clients
@@ -86,7 +86,17 @@ def test_a_stop_comes_before_all_who_have_just_come() -> None:
     clients = Clients()
     clients.wait(110, 1)
 
-    (stop,) = clients.wait(1, 1, is_urgent=True)
+    (stop,) = clients.wait(1, 1, Urgency.STOP)
+    clients.pass_turns(1)
+
+    assert stop.served == 1
+
+
+def test_a_stop_comes_before_all_who_have_just_come_to_hold_the_vehicle() -> None:
+    clients = Clients()
+    clients.wait(50, 1, Urgency.PAUSE)
+
+    (stop,) = clients.wait(1, 1, Urgency.STOP)
     clients.pass_turns(1)
 
     assert stop.served == 1
@@ -94,10 +104,10 @@ def test_a_stop_comes_before_all_who_have_just_come() -> None:
 
 def test_a_stop_does_not_wait_behind_those_that_stop_without_end() -> None:
     clients = Clients()
-    clients.wait(110, 1_000, is_urgent=True)
+    clients.wait(110, 1_000, Urgency.STOP)
     clients.pass_turns(110)
 
-    (stop,) = clients.wait(1, 1, is_urgent=True)
+    (stop,) = clients.wait(1, 1, Urgency.STOP)
     clients.pass_turns(1)
 
     assert stop.served == 1
@@ -107,12 +117,12 @@ def test_nobody_waits_forever_behind_those_that_come_first() -> None:
     """Each turn there are more new clients, urgent and not, than one turn can serve."""
     clients = Clients()
     patient = clients.wait(3, 1_000)
-    urgent = clients.wait(3, 1_000, is_urgent=True)
+    urgent = clients.wait(3, 1_000, Urgency.STOP)
     clients.pass_turns(10)
     before = [client.served for client in (*patient, *urgent)]
 
     for _ in range(40):
-        clients.wait(10, 1, is_urgent=True)
+        clients.wait(10, 1, Urgency.STOP)
         clients.wait(10, 1)
         clients.pass_turns(1)
 
