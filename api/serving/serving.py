@@ -68,7 +68,9 @@ _MISUSES = (
     UnreadableFileError,
 )
 _STDOUT, _STDERR = 1, 2
-_SWITCH_S = 0.001
+_SWITCH_S = 0.0002
+"""While 50 clients set holds, a stop whose flight to the disk waits for the lock takes 25 ms and at
+most 47; with 1 ms it was 29 and at most 72."""
 
 
 def serve(options: ServeOptions) -> int:

@@ -106,7 +106,7 @@ class RosLink:
             RuntimeError: The middleware does not start, or ROS_DOMAIN_ID is invalid.
         """
         check_domain()
-        sys.setswitchinterval(_SWITCH_S)
+        sys.setswitchinterval(min(_SWITCH_S, sys.getswitchinterval()))
         self.context = rclpy.Context()
         # No arguments, since those of the command line are not for ROS; no signal handlers, since
         # `pilothouse serve` handles SIGTERM and SIGINT.
