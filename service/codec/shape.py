@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, TypeAlias
 
 from service.codec.errors import CodecError
@@ -36,26 +37,30 @@ class Shape:
 
     def checked(self) -> Read:
         """Return `read` for JSON of any type."""
-        takes, read = self.takes, self.read
-        if read is as_it_is:
-            return self._checked_as_it_is()
+        if self.read is as_it_is:
+            return _checked_as_it_is(self.takes)
+        return _checked(self.takes, self.read)
 
-        def check(plain: Json) -> Any:  # noqa: ANN401  # whatever the type is
-            if type(plain) not in takes:
-                raise unexpected(takes, plain)
-            return read(plain)
 
-        return check
+# Thousands of fields are of few shapes: each needs one function only.
+@cache
+def _checked(takes: tuple[type, ...], read: Read) -> Read:
+    def check(plain: Json) -> Any:  # noqa: ANN401  # whatever the type is
+        if type(plain) not in takes:
+            raise unexpected(takes, plain)
+        return read(plain)
 
-    def _checked_as_it_is(self) -> Read:
-        takes = self.takes
+    return check
 
-        def check(plain: Json) -> Json:
-            if type(plain) not in takes:
-                raise unexpected(takes, plain)
-            return plain
 
-        return check
+@cache
+def _checked_as_it_is(takes: tuple[type, ...]) -> Read:
+    def check(plain: Json) -> Json:
+        if type(plain) not in takes:
+            raise unexpected(takes, plain)
+        return plain
+
+    return check
 
 
 def as_it_is(plain: Json) -> Json:

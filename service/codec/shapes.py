@@ -5,6 +5,7 @@ import binascii
 import sys
 from collections.abc import Mapping
 from enum import StrEnum
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -43,6 +44,7 @@ PLAIN: Mapping[Any, Shape] = {
 }
 
 
+@cache
 def of_enum(kind: type[StrEnum]) -> Shape:
     """Return the shape of an enumeration: the text of the member."""
     members = {member.value: member for member in kind}
@@ -57,6 +59,7 @@ def of_enum(kind: type[StrEnum]) -> Shape:
     return Shape((str,), read, is_of=(kind,))
 
 
+@cache
 def of_tuple(item: Shape) -> Shape:
     """Return the shape of a tuple of any length: a list."""
     read_item, write_item = item.checked(), item.write
@@ -76,6 +79,7 @@ def of_tuple(item: Shape) -> Shape:
     return Shape((list,), read, None if write_item is None else write, is_of=(tuple,))
 
 
+@cache
 def of_mapping(value: Shape) -> Shape:
     """Return the shape of a mapping from texts: an object."""
     read_value, write_value = value.checked(), value.write
