@@ -55,7 +55,7 @@ class SimulatedVehicle:
         self._plant = settings.plant
         """As it is with the current fault."""
         self._is_ideal = _is_ideal(settings.plant)
-        self._noise = _NoiseSource(settings.plant.noise)
+        self._noise = _noise_source(settings.plant.noise)
         state = at_first or VehicleState(settings.pose, 0.0, 0.0)
         pose = replace(state.pose, yaw_rad=_wrapped(state.pose.yaw_rad))
         steering = _clipped(state.steering_angle_rad, settings.limits.max_steering_angle_rad)
@@ -158,8 +158,12 @@ class SimulatedVehicle:
             if due == self._next_report:
                 self._next_report += REPORT_PERIOD
                 if self._reporting and self._fault is not VehicleFault.SILENT:
-                    self._reports.append(VehicleReport(self._noise.added_to(self._state)))
+                    self._reports.append(VehicleReport(self._measured()))
                     self._reports_at = due
+
+    def _measured(self) -> VehicleState:
+        """Return the state as the vehicle's sensors find it."""
+        return self._state if self._noise is None else self._noise.added_to(self._state)
 
     def _next_due(self) -> Instant:
         due = self._next_report
@@ -226,8 +230,13 @@ class SimulatedVehicle:
         )
 
 
+def _noise_source(noise: Noise) -> "_NoiseSource | None":
+    """Return what adds the noise; None: there is none."""
+    return _NoiseSource(noise) if noise.position_m or noise.yaw_rad or noise.speed_mps else None
+
+
 class _NoiseSource:
-    """Adds reproducible noise."""
+    """Adds reproducible noise. The first one makes numpy load its random numbers, with 2 MB."""
 
     def __init__(self, noise: Noise) -> None:
         self._noise = noise
@@ -235,8 +244,6 @@ class _NoiseSource:
 
     def added_to(self, state: VehicleState) -> VehicleState:
         noise = self._noise
-        if not (noise.position_m or noise.yaw_rad or noise.speed_mps):
-            return state
         x, y, yaw, speed = self._random.standard_normal(4).tolist()
         pose = Pose(
             state.pose.x_m + noise.position_m * x,
