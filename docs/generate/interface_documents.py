@@ -7,8 +7,8 @@ from typing import Any
 from api.app import create_app
 from api.documents.asyncapi import describe_stream
 from api.serving.composition import ServeOptions, compose, read_files
+from docs.generate.robot_schema import robot_schema
 from service.clock import MonotonicClock
-from service.files.robot_file import RobotSettings
 
 
 def openapi_document() -> str:
@@ -26,7 +26,7 @@ def asyncapi_document() -> str:
 
 def robot_file_schema() -> str:
     """Return the text of `robot-file.schema.json`."""
-    schema = RobotSettings.model_json_schema()
+    schema = robot_schema()
     return _text({"$schema": "https://json-schema.org/draft/2020-12/schema", **schema})
 
 

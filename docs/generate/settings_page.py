@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
 from docs.generate.markdown import code, joined, page, table
+from docs.generate.robot_schema import robot_schema
 from domain.health.signals import default_signals
 from domain.simulation.node_settings import NodeSettings
 from domain.timebase import to_seconds
-from service.files.robot_file import RobotSettings
 
 Schema: TypeAlias = Mapping[str, Any]
 
@@ -62,7 +62,7 @@ class _Document:
 
 def settings_page() -> str:
     """Return the page `settings.md`."""
-    document = _Document(RobotSettings.model_json_schema())
+    document = _Document(robot_schema())
     usual = dict(_usual())
     single, sections = [], []
     for key, schema in document.blocks(document.root):

@@ -10,11 +10,12 @@ Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class SettingsBlock(BaseModel):
-    """A block of settings: strict, frozen, without unknown keys."""
+    """A block of settings: strict, frozen, without unknown keys.
 
-    model_config = ConfigDict(
-        strict=True, extra="forbid", frozen=True, use_attribute_docstrings=True
-    )
+    The texts below its attributes are read by `docs.generate`.
+    """
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
 
 def bare_names(named: Mapping[str, Any]) -> dict[str, Any]:
