@@ -1,7 +1,7 @@
 """The web application around a supervisor that somebody else runs: its robot, and simulations."""
 
 import asyncio
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from functools import partial
 
@@ -9,7 +9,7 @@ from fastapi import FastAPI
 
 from api.documents import route as documents
 from api.documents.asyncapi import stream_document
-from api.documents.route import encode_description, keep_description
+from api.documents.route import encode_description, keep_description, keep_stream_description
 from api.http import model_jobs, task_jobs
 from api.http.access import Access
 from api.http.gate.audit import Audit
@@ -121,23 +121,26 @@ def _guard(
 async def prepare(app: FastAPI) -> None:
     """Build what else would be built at the first requests: the page, and the documents.
 
-    The larger document is made in a forked process: as objects it takes 4 MB for as long as the
-    service runs, and as text a tenth of that.
+    The documents are made in forked processes: as objects they take 5 MB for as long as the service
+    runs, and as text a tenth of that. The page is put together meanwhile, in the thread of the
+    loop, which has nothing else to do yet: what the texts take while they are worked on would stay
+    with another thread, where nothing uses it again.
     """
     async with asyncio.TaskGroup() as preparing:
-        described = preparing.create_task(_described(app))
-        # It is forked now, before there is a thread that it would have half of.
+        described = preparing.create_task(_made_apart(partial(encode_description, app)))
+        stream = preparing.create_task(_made_apart(stream_document))
+        # They are forked now.
         await asyncio.sleep(0)
-        preparing.create_task(asyncio.to_thread(assembled_page))
+        assembled_page()
     keep_description(app, described.result())
-    stream_document()
+    keep_stream_description(app, stream.result())
 
 
-async def _described(app: FastAPI) -> bytes:
+async def _made_apart(make: Callable[[], bytes]) -> bytes:
     try:
-        return await forked_call(partial(encode_description, app))
+        return await forked_call(make)
     except (OSError, ForkedCallError):
-        return encode_description(app)
+        return make()
 
 
 @asynccontextmanager

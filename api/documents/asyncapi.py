@@ -4,7 +4,6 @@ What goes over `/rosbridge` is named only.
 """
 
 from collections.abc import Mapping
-from functools import cache
 from types import MappingProxyType
 from typing import Any
 
@@ -82,9 +81,8 @@ def describe_stream() -> dict[str, Any]:
     }
 
 
-@cache
 def stream_document() -> bytes:
-    """Return the text of the AsyncAPI document, made once."""
+    """Return the text of the AsyncAPI document."""
     return to_json(describe_stream())
 
 

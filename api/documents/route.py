@@ -81,17 +81,20 @@ async def get_style(request: Request) -> Response:
 @policy(Permission.READ_PUBLIC)
 async def get_asyncapi(request: Request) -> Response:
     """Return the description of the stream."""
-    return answer_with(_asyncapi_file(), request)
+    state = request.app.state
+    if not hasattr(state, "asyncapi_file"):
+        keep_stream_description(request.app, stream_document())
+    return answer_with(state.asyncapi_file, request)
+
+
+def keep_stream_description(app: FastAPI, encoded: bytes) -> None:
+    """Answer with a description of the stream that was encoded before."""
+    app.state.asyncapi_file = PageFile.of(encoded, "application/json")
 
 
 @cache
 def _page() -> bytes:
     return (files("web") / "docs" / "index.html").read_bytes()
-
-
-@cache
-def _asyncapi_file() -> PageFile:
-    return PageFile.of(stream_document(), "application/json")
 
 
 def _asset(name: str, media_type: str, request: Request) -> Response:

@@ -78,3 +78,12 @@ async def test_the_description_is_the_same_bytes_for_all(
     monkeypatch.setattr(robot.app, "openapi", None)
 
     assert (await robot.http.get("/openapi.json")).content == first.content
+
+
+async def test_the_description_of_the_stream_is_made_once(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = await robot.http.get("/asyncapi.json")
+    monkeypatch.setattr("api.documents.route.stream_document", None)
+
+    assert (await robot.http.get("/asyncapi.json")).content == first.content
