@@ -227,9 +227,8 @@ class ChangeView:
     """None: it does not go back, or not yet."""
 
 
-@dataclass(frozen=True, slots=True)
-class SignalView:
-    """One signal: the value held, and its evaluation."""
+class SignalView(NamedTuple):
+    """One signal: the value held, and its evaluation; thousands a second, so a tuple."""
 
     signal: str
     value: SignalValue | None

@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from itertools import islice
 from operator import attrgetter
 from typing import Generic, TypeVar
@@ -31,9 +30,7 @@ REPEATS_EVERY = seconds(0.5)
 signals would be three quarters of what a client of an idle robot gets."""
 
 
-_STAYS = attrgetter(
-    *(field.name for field in fields(SignalView) if field.name not in ("received_at", "stamp"))
-)
+_STAYS = attrgetter(*(name for name in SignalView._fields if name not in ("received_at", "stamp")))
 """All that is told of a signal but when it was received."""
 
 
@@ -227,4 +224,4 @@ class _Changed(Generic[Key]):
 
 def _only_repeats(view: SignalView, told: SignalView) -> bool:
     """Tell whether a signal is as it was told, and was only received again."""
-    return _STAYS(view) == _STAYS(told)
+    return view.value == told.value and _STAYS(view) == _STAYS(told)

@@ -324,8 +324,8 @@ class Health(Concern):
 
         With what was measured when it began to: later readings are not worth a write each.
         """
-        state, kept = self._manager.state(name), self._kept.get(name)
-        waits = state.error if state.needs_acknowledgement else None
+        view, kept = self._manager.signal(name), self._kept.get(name)
+        waits = view.error if view.needs_acknowledgement else None
         key = None if waits is None else self._key(name, waits)
         if key == kept:
             return

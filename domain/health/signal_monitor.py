@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from domain.findings import Blocker, Fact
 from domain.health.error_slot import ErrorSlot
-from domain.health.held_readings import HeldReadings
+from domain.health.held_readings import HeldReading, HeldReadings
 from domain.health.signal_reasons import (
     kept_reason,
     pressed_reason,
@@ -23,7 +23,7 @@ from domain.health.signals import (
     Recovery,
     SignalSettings,
 )
-from domain.inputs import Reading, SignalValue, SourceFault
+from domain.inputs import Reading, SourceFault
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
 
@@ -33,24 +33,6 @@ class StopCause(NamedTuple):
 
     message: str
     since: Instant
-
-
-class SignalState(NamedTuple):
-    """What can change about a signal; a tuple, since there are thousands a second."""
-
-    value: SignalValue | None
-    source: str | None
-    received_at: Instant | None
-    stamp: Instant | None
-    stale: bool
-    error: str | None
-    pending_error: str | None
-    pending_since: Instant | None
-    pending_needs: Duration | None
-    skewed: bool
-    needs_acknowledgement: bool
-    settings: Mapping[str, Fact]
-    source_fault: str | None
 
 
 class SignalMonitor:
@@ -100,9 +82,8 @@ class SignalMonitor:
         """Differs whenever something about the signal does."""
         self.is_calm = False
         """Nothing is wrong, counts or is pressed: a good reading changes nothing but the value."""
-        self._state: SignalState | None = self._make_state(self._is_stale(start))
+        self._view: SignalView | None = self._make_view(self._is_stale(start))
         """None: to be made when somebody asks."""
-        self._view: SignalView | None = None
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -167,6 +148,7 @@ class SignalMonitor:
             limit: One of the settings; None: no value is bad.
             now: The current time.
         """
+        self._look()
         self.limit = limit
         self.settings = self.settings.with_limit(limit)
         self.readings.settings = self.settings
@@ -222,7 +204,7 @@ class SignalMonitor:
         self._value_slot.update(None if cause is None else cause.error, now)
         self._stale_slot.update(self._stale if is_stale else None, now)
         self._waiting = () if self._counting_since is None else tuple(self._before_cause(met))
-        before, state = self.state, self._make_state(is_stale)
+        before, view = self.view, self._make_view(is_stale)
         self.is_calm = (
             cause is None
             and self._counting_since is None
@@ -231,21 +213,18 @@ class SignalMonitor:
             and self.fault is None
             and not self.settings.spec.is_stop
         )
-        if state != before:
-            self._note_change(state)
+        if view != before:
+            self._note_change(view)
 
-    def _note_change(self, state: SignalState | None) -> None:
+    def _look(self) -> None:
+        """Make the view before something changes, so that the change is told whoever looked."""
+        self._view = self.view
+
+    def _note_change(self, view: SignalView | None) -> None:
         self.version += 1
-        self._state, self._view = state, None
+        self._view = view
 
     # --- what can be seen ------------------------------------------------------------------------
-
-    @property
-    def state(self) -> SignalState:
-        """Return what can change about the signal; the same object until something does."""
-        if self._state is None:
-            self._state = self._make_state(is_stale=False)
-        return self._state
 
     @property
     def is_on(self) -> bool:
@@ -273,24 +252,9 @@ class SignalMonitor:
     def view(self) -> SignalView:
         """Return the signal; the same object until something changes."""
         if self._view is None:
-            spec, state = self.settings.spec, self.state
-            self._view = SignalView(
-                spec.name,
-                state.value,
-                spec.unit,
-                state.source,
-                state.received_at,
-                state.stamp,
-                state.stale,
-                state.error,
-                state.pending_error,
-                state.pending_since,
-                state.pending_needs,
-                state.skewed,
-                state.needs_acknowledgement,
-                state.settings,
-                state.source_fault,
-            )
+            # Only good readings of a calm signal leave it to be made.
+            newest = self.readings.newest
+            self._view = self._make_view(False) if newest is None else self._make_calm_view(newest)
         return self._view
 
     @property
@@ -360,12 +324,14 @@ class SignalMonitor:
             facts["limits_because"] = None if self.limit is None else self.limit.name
         return facts
 
-    def _make_state(self, is_stale: bool) -> SignalState:
-        newest = self.readings.newest
+    def _make_view(self, is_stale: bool) -> SignalView:
+        spec, newest = self.settings.spec, self.readings.newest
         pressing = self.readings.pressing
         coming = min(self._waiting, key=_needs, default=None)
-        return SignalState(
+        return SignalView(
+            spec.name,
             self.readings.value,
+            spec.unit,
             pressing[0].source if pressing else newest.source if newest else None,
             newest.received_at if newest else None,
             newest.stamp if newest else None,
@@ -378,6 +344,27 @@ class SignalMonitor:
             self._value_slot.waits_for_acknowledgement,
             self._facts,
             self._fault_reason or None,
+        )
+
+    def _make_calm_view(self, newest: HeldReading) -> SignalView:
+        """Return the signal while it is calm: as `_make_view`, of what can be told then."""
+        spec = self.settings.spec
+        return SignalView(
+            spec.name,
+            newest.value,
+            spec.unit,
+            newest.source,
+            newest.received_at,
+            newest.stamp,
+            False,
+            None,
+            None,
+            None,
+            None,
+            newest.skewed,
+            False,
+            self._facts,
+            None,
         )
 
     @property

@@ -21,7 +21,7 @@ from domain.findings import Blocker
 from domain.health.error_registry import ErrorChanges, ErrorRegistry
 from domain.health.held_readings import HeldReadings
 from domain.health.monitor_graph import faults_of_monitors, fed_by, number_of
-from domain.health.signal_monitor import SignalMonitor, SignalState, StopCause
+from domain.health.signal_monitor import SignalMonitor, StopCause
 from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, ModeLimit, SignalSettings
 from domain.health.window_monitor import WindowMonitor
 from domain.inputs import Reading, Readings, SourceFault
@@ -115,8 +115,8 @@ class _Gathered:
         name, part = monitor.settings.spec.name, monitor.settings.part
         if before is not None:
             self.errors.add(ErrorKey(part, before))
-            if before != monitor.state.error:
-                self.settled.append((name, before, monitor.state.stale))
+            if before != monitor.view.error:
+                self.settled.append((name, before, monitor.view.stale))
         if after is not None:
             self.errors.add(ErrorKey(part, after))
             self.pending.append((name, after))
@@ -362,10 +362,6 @@ class StateManager:
     def settings(self, name: str) -> SignalSettings:
         """Return the settings of a declared signal."""
         return self._monitors[name].settings
-
-    def state(self, name: str) -> SignalState:
-        """Return what can change about a declared signal; cheaper than its view."""
-        return self._monitors[name].state
 
     def signal(self, name: str) -> SignalView:
         """Return one signal; the same object until it changes.

@@ -95,6 +95,7 @@ class WindowMonitor(SignalMonitor):
         value = self.window.value(now)
         is_same = False
         if value is None:
+            self._look()
             self._lose_value()
             # Without readings an error is not known to be over. With readings that have no value it
             # is: no trend leads to the limit any more.
@@ -115,6 +116,7 @@ class WindowMonitor(SignalMonitor):
     def set_limit(self, limit: ModeLimit | None, now: Instant) -> None:
         """Put another limit in force, and judge the value anew; see `SignalMonitor`."""
         value = self.window.value(now)
+        self._look()
         if value is None:
             self._lose_value()
         else:

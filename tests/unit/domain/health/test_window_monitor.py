@@ -6,8 +6,9 @@ import pytest
 
 from domain.errors import InvalidValueError
 from domain.events.health import ErrorRaised
-from domain.health.signals import Recovery
+from domain.health.signals import ModeLimit, Recovery
 from domain.health.window_monitor import SHOWN_EVERY, SOURCE
+from domain.inputs import Reading, Readings
 from domain.snapshot import ErrorKey, ErrorState
 from domain.timebase import seconds, to_seconds
 from domain.windows.settings import Statistic
@@ -206,3 +207,29 @@ def test_a_monitor_shows_its_window_and_its_limits() -> None:
     assert (view.of, view.statistic, view.window, view.size) == ("load", "mean", seconds(5), None)
     assert (view.filled, view.value) == (0.4, None)
     assert (view.limits, view.limits_because) == ({"above": 50.0}, None)
+
+
+@pytest.mark.parametrize("looks", [True, False])
+def test_what_changed_is_told_whether_or_not_anybody_looked_before(looks: bool) -> None:
+    low, high = ModeLimit(above(80, "LOAD_HIGH")), ModeLimit(above(90, "LOAD_HIGH"))
+    robot = WatchedRobot(signal(limits=(low, high)), monitor(Statistic.MEAN, above(50)))
+
+    def told() -> set[str]:
+        changed = set(robot.outbox.take().signals)
+        if looks:
+            robot.health.signals()
+        return changed
+
+    for at_s in (1, 2):
+        robot.read(at_s, load=10.0)
+        told()
+    robot.health.set_limit("load", high, robot.now)
+    assert told() == {"load"}, "its limit"
+    robot.pass_time(2.2)
+    told()
+    robot.pass_time(6.2)
+    assert told() == {"watched"}, "it became unknown"
+    robot.health.take_readings(Readings((Reading("load", 10.0),), "test"), robot.now)
+    told()
+    robot.health.take_readings(Readings((Reading("load", 95.0),), "test"), robot.now)
+    assert told() == {"load", "watched"}, "both turned bad"

@@ -1,7 +1,5 @@
 """Signals and the state of the robot as clients see them."""
 
-from dataclasses import replace
-
 import pytest
 
 from api.http.schemas.health import (
@@ -21,8 +19,7 @@ from tests.support.frames import IDLE, signal_view
 from tests.support.manual_clock import ManualClock
 
 CLOCK = ManualClock()
-PENDING = replace(
-    signal_view("gps_accuracy", 250.0),
+PENDING = signal_view("gps_accuracy", 250.0)._replace(
     pending_error="GPS_LOST",
     pending_since=seconds(1),
     pending_needs=seconds(15),
@@ -48,7 +45,7 @@ def test_a_question_is_answered_with_ages() -> None:
 
 
 def test_a_boolean_is_shown_as_one() -> None:
-    view = replace(signal_view("estop"), value=True)
+    view = signal_view("estop")._replace(value=True)
 
     assert '"value":true' in StreamedSignalJson.of(view, CLOCK).model_dump_json()
 

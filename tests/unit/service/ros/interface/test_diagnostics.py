@@ -76,7 +76,7 @@ def test_a_vehicle_that_should_stand_is_an_error_of_the_robot_and_of_no_signal()
 def test_a_robot_in_error_says_why() -> None:
     low = Blocker("BATTERY_LOW", "battery 20 % is below 50 %", ("battery_level",))
     stop = Blocker("ESTOP", "e-stop is pressed (source api)", ("estop",))
-    battery = replace(BATTERY, error="BATTERY_LOW")
+    battery = BATTERY._replace(error="BATTERY_LOW")
 
     robot, signal = diagnosed([], [battery], error_state(stop, low))
 
@@ -96,10 +96,10 @@ def test_a_robot_in_error_says_why() -> None:
     ("signal", "level"),
     [
         (BATTERY, Level.OK),
-        (replace(BATTERY, pending_error="BATTERY_LOW"), Level.WARN),
-        (replace(BATTERY, error="BATTERY_LOW"), Level.ERROR),
-        (replace(BATTERY, stale=True), Level.STALE),
-        (replace(BATTERY, stale=True, error="BATTERY_LOW"), Level.STALE),
+        (BATTERY._replace(pending_error="BATTERY_LOW"), Level.WARN),
+        (BATTERY._replace(error="BATTERY_LOW"), Level.ERROR),
+        (BATTERY._replace(stale=True), Level.STALE),
+        (BATTERY._replace(stale=True, error="BATTERY_LOW"), Level.STALE),
     ],
 )
 def test_a_signal_is_as_bad_as_what_is_judged_of_it(signal: SignalView, level: Level) -> None:
@@ -107,14 +107,14 @@ def test_a_signal_is_as_bad_as_what_is_judged_of_it(signal: SignalView, level: L
 
 
 def test_a_signal_that_waits_names_the_error_that_is_coming() -> None:
-    signal = replace(BATTERY, pending_error="BATTERY_LOW")
+    signal = BATTERY._replace(pending_error="BATTERY_LOW")
 
     assert told(diagnosed([], [signal])[1])[2] == "BATTERY_LOW is pending"
 
 
 def test_a_signal_shows_its_value_unit_and_source() -> None:
-    pressed = replace(signal_view("estop"), value=True, source="panel")
-    never = replace(signal_view("temperature"), value=None, source=None, unit="°C")
+    pressed = signal_view("estop")._replace(value=True, source="panel")
+    never = signal_view("temperature")._replace(value=None, source=None, unit="°C")
 
     _, estop, temperature = diagnosed([], [pressed, never])
 

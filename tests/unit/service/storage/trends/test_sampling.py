@@ -1,6 +1,6 @@
 """Which changes of a view are readings."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import pytest
 
@@ -26,7 +26,7 @@ NEVER_SEEN = SignalView(
     needs_acknowledgement=False,
     settings={},
 )
-SEEN = replace(NEVER_SEEN, value=7.0, received_at=100, stale=False)
+SEEN = NEVER_SEEN._replace(value=7.0, received_at=100, stale=False)
 
 
 @dataclass
@@ -57,22 +57,22 @@ def sampling(signal: _Signal) -> Sampling:
 def test_each_reading_counts_once(signal: _Signal, sampling: Sampling) -> None:
     signal.becomes(sampling, NEVER_SEEN, 50)
     signal.becomes(sampling, SEEN, 100)
-    signal.becomes(sampling, replace(SEEN, skewed=True), 150)
-    signal.becomes(sampling, replace(SEEN, received_at=200), 200)
+    signal.becomes(sampling, SEEN._replace(skewed=True), 150)
+    signal.becomes(sampling, SEEN._replace(received_at=200), 200)
 
     assert signal.noted == [(100, 7.0, None), (200, 7.0, None)]
 
 
 def test_two_readings_of_one_moment_are_two(signal: _Signal, sampling: Sampling) -> None:
     signal.becomes(sampling, SEEN, 100)
-    signal.becomes(sampling, replace(SEEN, value=99.0), 100)
+    signal.becomes(sampling, SEEN._replace(value=99.0), 100)
 
     assert [value for _, value, _ in signal.noted] == [7.0, 99.0]
 
 
 def test_an_error_that_time_alone_raises_is_not_missed(signal: _Signal, sampling: Sampling) -> None:
     signal.becomes(sampling, SEEN, 100)
-    signal.becomes(sampling, replace(SEEN, error="LOST"), 500)
+    signal.becomes(sampling, SEEN._replace(error="LOST"), 500)
     signal.becomes(sampling, SEEN, 600)
 
     assert signal.noted == [(100, 7.0, None), (500, 7.0, "LOST")]
@@ -80,7 +80,7 @@ def test_an_error_that_time_alone_raises_is_not_missed(signal: _Signal, sampling
 
 def test_a_silent_signal_has_no_readings(signal: _Signal, sampling: Sampling) -> None:
     signal.becomes(sampling, SEEN, 100)
-    signal.becomes(sampling, replace(SEEN, stale=True), 500)
-    signal.becomes(sampling, replace(SEEN, stale=True, error="ESTOP"), 600)
+    signal.becomes(sampling, SEEN._replace(stale=True), 500)
+    signal.becomes(sampling, SEEN._replace(stale=True, error="ESTOP"), 600)
 
     assert signal.noted == [(100, 7.0, None)]
