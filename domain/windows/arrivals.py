@@ -4,6 +4,9 @@ Silence counts as well: before the first reading, gap and age are the time since
 """
 
 from bisect import bisect_left
+from collections.abc import Sequence
+from itertools import islice
+from operator import sub
 
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.windows.contents import Contents
@@ -16,11 +19,11 @@ from domain.windows.settings import Threshold
 class Count(Measure):
     """How many readings the window holds."""
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading: the window counts."""
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings: the window counts."""
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading: the window counts."""
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings: the window counts."""
 
     def value(self, contents: Contents, now: Instant) -> float | None:
         """Return the number of readings."""
@@ -91,17 +94,15 @@ class Gap(Measure):
         self._last_at: Instant | None = None
         """The newest reading of the window."""
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        if self._last_at is not None:
-            self._gaps.enter(at - self._last_at)
-        self._last_at = at
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        first = () if self._last_at is None else (times[0] - self._last_at,)
+        self._gaps.enter([*first, *map(sub, islice(times, 1, None), times)])
+        self._last_at = times[-1]
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading, and the gap that began with it."""
-        if self._gaps:
-            self._gaps.leave()
-        else:
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings, and the gaps that began with them."""
+        if self._gaps.leave(len(times)) < len(times):
             self._last_at = None
 
     def value(self, contents: Contents, now: Instant) -> float:
@@ -134,11 +135,11 @@ class Gap(Measure):
 class Age(Measure):
     """The time since the newest reading, whether it is in the window or not."""
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading: the window knows when it arrived."""
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings: the window knows when it arrived."""
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading: only the newest counts."""
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings: only the newest counts."""
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the age in seconds."""
@@ -162,14 +163,15 @@ class StuckFor(Measure):
         self._value: float | None = None
         self._since: Instant = 0
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        if value != self._value:
-            self._value = value
-            self._since = at
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        for at, value in zip(times, values, strict=True):
+            if value != self._value:
+                self._value = value
+                self._since = at
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading: it may still be the one that changed last."""
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings: one may still be the one that changed last."""
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the time in seconds."""

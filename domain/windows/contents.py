@@ -1,8 +1,13 @@
 """Which readings a window holds, and since when it holds all that it should."""
 
 from collections import deque
+from collections.abc import Sequence
+from typing import TypeAlias
 
 from domain.timebase import Duration, Instant
+
+Popped: TypeAlias = tuple[list[Instant], list[float]]
+"""When readings arrived that are held no longer, and their values."""
 
 NEVER: Instant = 1 << 63
 """Later than any clock tells."""
@@ -48,31 +53,52 @@ class Contents:
         """Tell whether there is no room for another reading."""
         return len(self._times) >= self._size
 
-    def append(self, at: Instant, value: float) -> None:
-        """Take in a reading; there is room for it."""
+    @property
+    def surplus(self) -> int:
+        """Return how many readings have to leave, since newer ones take their place."""
+        return len(self._times) - self._size
+
+    def is_exceeded_by(self, readings: int) -> bool:
+        """Tell whether with so many more some may have to go before their time."""
+        return self.length is not None and len(self._times) + readings > self._size
+
+    def extend(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings; there is at least one."""
         if not self._times and self.length is not None:
-            self.next_leaves_at = at + self.length
-        self._times.append(at)
-        self._values.append(value)
-        self.heard_at = at
+            self.next_leaves_at = times[0] + self.length
+        self._times.extend(times)
+        self._values.extend(values)
+        self.heard_at = times[-1]
 
-    def pop(self) -> tuple[Instant, float]:
-        """Remove the oldest reading, whose time is over; return when it arrived and its value."""
-        at = self._times.popleft()
+    def pop_until(self, now: Instant) -> Popped:
+        """Remove the readings whose time is over; return when they arrived and their values."""
+        if self.length is None:
+            return [], []
+        last, times = now - self.length, self._times
+        left = []
+        while times and times[0] <= last:
+            left.append(times.popleft())
+        self.next_leaves_at = times[0] + self.length if times else NEVER
+        values = self._values
+        return left, [values.popleft() for _ in left]
+
+    def pop_first(self, count: int) -> Popped:
+        """Remove so many of the oldest readings, as `pop_until` does."""
+        times, values = self._times, self._values
+        popped = [times.popleft() for _ in range(count)], [values.popleft() for _ in range(count)]
         if self.length is not None:
-            self.next_leaves_at = self._times[0] + self.length if self._times else NEVER
-        return at, self._values.popleft()
+            self.next_leaves_at = times[0] + self.length if times else NEVER
+        return popped
 
-    def make_room(self) -> tuple[Instant, float]:
-        """Remove the oldest reading for the next one, as `pop` does."""
+    def make_room(self) -> Popped:
+        """Remove the oldest reading for the next one, before its time."""
         if self.length is not None:
             self._lost_at = self._times[0]
-        return self.pop()
+        return self.pop_first(1)
 
     def is_complete(self, now: Instant) -> bool:
         """Tell whether no reading is missing that belongs into the window."""
-        lost_until = self.complete_at()
-        return lost_until is None or now >= lost_until
+        return self._lost_at is None or self.length is None or now >= self._lost_at + self.length
 
     def complete_at(self) -> Instant | None:
         """Return when nothing is missing any more; None: nothing ever was."""

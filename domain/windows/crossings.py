@@ -14,7 +14,11 @@ _ROUNDING = 200
 
 def earliest(*instants: Instant | None) -> Instant | None:
     """Return the earliest of instants; None: there is none."""
-    return min((at for at in instants if at is not None), default=None)
+    first = None
+    for at in instants:
+        if at is not None and (first is None or at < first):
+            first = at
+    return first
 
 
 def rises_across_at(since: Instant, threshold: Threshold, value: float) -> Instant | None:

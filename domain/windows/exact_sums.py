@@ -7,45 +7,91 @@ is long, and never fits a value near 1e6 whose spread is 1.
 """
 
 import math
+from collections.abc import Sequence
 
 from domain.timebase import NANOSECONDS_PER_SECOND, Instant
 
 
 class ExactSum:
-    """Number, sum and sum of squares of the readings of a window."""
+    """Number and sum of the readings of a window."""
 
     def __init__(self) -> None:
         self.n = 0
         self.shift = 0
         """The sums are in units of 2 ** -shift, the finest that was needed so far."""
         self.sum = 0
+        self._scale = 1.0
+        """The same as a float: units of 1; infinite if no float is so large."""
+
+    def enter(self, values: Sequence[float]) -> list[int]:
+        """Add finite readings; return them in units."""
+        numbers = self._in_units(values)
+        self.n += len(numbers)
+        self.sum += sum(numbers)
+        return numbers
+
+    def leave(self, values: Sequence[float]) -> list[int]:
+        """Take away readings that had been added; return them in units."""
+        numbers = self._in_units(values)
+        self.n -= len(numbers)
+        self.sum -= sum(numbers)
+        return numbers
+
+    def mean(self) -> float:
+        """Return the mean of at least one reading, rounded once."""
+        return self.sum / (self.n << self.shift)
+
+    def _in_units(self, values: Sequence[float]) -> list[int]:
+        scale, numbers = self._scale, []
+        for value in values:
+            # A power of two rounds nothing, unless the product is infinite.
+            number = value * scale
+            if not number.is_integer():
+                return self._in_finer_units(values)
+            numbers.append(int(number))
+        return numbers
+
+    def _in_finer_units(self, values: Sequence[float]) -> list[int]:
+        """Return readings in units that are made fine enough for all of them."""
+        ratios = [value.as_integer_ratio() for value in values]
+        shifts = [denominator.bit_length() - 1 for _, denominator in ratios]
+        self._refine(max(0, max(shifts) - self.shift))
+        units = zip(ratios, shifts, strict=True)
+        return [numerator << self.shift - shift for (numerator, _), shift in units]
+
+    def _refine(self, finer: int) -> None:
+        """Make the unit smaller by this power of two."""
+        self.shift += finer
+        self.sum <<= finer
+        self._scale = math.ldexp(1.0, self.shift) if self.shift < 1024 else math.inf
+
+
+class ExactSpread(ExactSum):
+    """Number, sum and sum of squares of the readings of a window."""
+
+    def __init__(self) -> None:
+        super().__init__()
         self._squares = 0
         """In squared units."""
 
-    def enter(self, value: float) -> int:
-        """Add a finite reading; return it in units."""
-        number = self._in_units(value)
-        self.n += 1
-        self.sum += number
-        self._squares += number * number
-        return number
+    def enter(self, values: Sequence[float]) -> list[int]:
+        """Add finite readings; return them in units."""
+        numbers = super().enter(values)
+        for number in numbers:
+            self._squares += number * number
+        return numbers
 
-    def leave(self, value: float) -> int:
-        """Take away a reading that had been added; return it in units."""
-        number = self._in_units(value)
-        self.n -= 1
-        self.sum -= number
-        self._squares -= number * number
-        return number
+    def leave(self, values: Sequence[float]) -> list[int]:
+        """Take away readings that had been added; return them in units."""
+        numbers = super().leave(values)
+        for number in numbers:
+            self._squares -= number * number
+        return numbers
 
     @property
     def spread(self) -> int:
         """Return n times the sum of the squared deviations from the mean, in squared units."""
         return self.n * self._squares - self.sum * self.sum
-
-    def mean(self) -> float:
-        """Return the mean of at least one reading, rounded once."""
-        return self.sum / (self.n << self.shift)
 
     def deviation(self) -> float:
         """Return the standard deviation of the population of at least one reading."""
@@ -60,18 +106,8 @@ class ExactSum:
             numerator <<= -2 * half
         return math.ldexp(math.sqrt(numerator / denominator), half)
 
-    def _in_units(self, value: float) -> int:
-        numerator, denominator = value.as_integer_ratio()
-        finer = denominator.bit_length() - 1 - self.shift
-        if finer > 0:
-            self._refine(finer)
-            return numerator
-        return numerator << -finer
-
     def _refine(self, finer: int) -> None:
-        """Make the unit smaller by this power of two."""
-        self.shift += finer
-        self.sum <<= finer
+        super()._refine(finer)
         self._squares <<= 2 * finer
 
 
@@ -85,20 +121,20 @@ class ExactLine:
             start: The origin of times, so that their squares are short.
         """
         self._start = start
-        self._values = ExactSum()
+        self._values = ExactSpread()
         self._times = 0
         self._squared_times = 0
         self._products = 0
         """Of times and values; in units of `_products_shift`."""
         self._products_shift = 0
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Add a finite reading."""
-        self._count(at, self._values.enter(value), 1)
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Add finite readings."""
+        self._count(times, self._values.enter(values), 1)
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Take away a reading that had been added."""
-        self._count(at, self._values.leave(value), -1)
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take away readings that had been added."""
+        self._count(times, self._values.leave(values), -1)
 
     def slope(self) -> float | None:
         """Return the slope per second; None: all readings came at once."""
@@ -136,10 +172,11 @@ class ExactLine:
         """Return the slope times `_width`, in units per nanosecond."""
         return self._values.n * self._products - self._times * self._values.sum
 
-    def _count(self, at: Instant, number: int, sign: int) -> None:
+    def _count(self, times: Sequence[Instant], numbers: Sequence[int], sign: int) -> None:
         self._products <<= self._values.shift - self._products_shift
         self._products_shift = self._values.shift
-        time = at - self._start
-        self._times += sign * time
-        self._squared_times += sign * time * time
-        self._products += sign * time * number
+        for at, number in zip(times, numbers, strict=True):
+            time = at - self._start
+            self._times += sign * time
+            self._squared_times += sign * time * time
+            self._products += sign * time * number

@@ -1,6 +1,7 @@
 """What a statistic over a window has to answer."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 from domain.timebase import Instant
 from domain.windows.contents import Contents
@@ -14,12 +15,12 @@ class Measure(ABC):
     """
 
     @abstractmethod
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in the newest reading of the window."""
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in the newest readings of the window, in their order."""
 
     @abstractmethod
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out the oldest reading of the window."""
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out the oldest readings of the window, in their order."""
 
     @abstractmethod
     def value(self, contents: Contents, now: Instant) -> float | None:

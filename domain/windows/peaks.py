@@ -1,6 +1,8 @@
 """Smallest, largest and range of the readings: one or two of them decide."""
 
 from collections import deque
+from collections.abc import Iterable, Sequence
+from operator import neg
 
 from domain.timebase import Instant
 from domain.windows.contents import Contents
@@ -36,19 +38,24 @@ class Peak:
         """Return the place of the largest in the queue; 0: it leaves next."""
         return self._candidates[0][1] - self._left
 
-    def enter(self, number: float) -> None:
-        """Append a number."""
-        candidates = self._candidates
-        while candidates and candidates[-1][0] <= number:
-            candidates.pop()
-        candidates.append((number, self._entered))
-        self._entered += 1
+    def enter(self, numbers: Iterable[float]) -> None:
+        """Append numbers."""
+        candidates, place = self._candidates, self._entered
+        for number in numbers:
+            while candidates and candidates[-1][0] <= number:
+                candidates.pop()
+            candidates.append((number, place))
+            place += 1
+        self._entered = place
 
-    def leave(self) -> None:
-        """Remove the first number of the queue."""
-        if self._candidates[0][1] == self._left:
-            self._candidates.popleft()
-        self._left += 1
+    def leave(self, count: int) -> int:
+        """Remove so many numbers from the front, or all; return how many there were to remove."""
+        candidates = self._candidates
+        there = min(count, self._entered - self._left)
+        left = self._left = self._left + there
+        while candidates and candidates[0][1] < left:
+            candidates.popleft()
+        return there
 
 
 class Largest(Measure):
@@ -57,13 +64,13 @@ class Largest(Measure):
     def __init__(self) -> None:
         self._peak = Peak()
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        self._peak.enter(value)
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        self._peak.enter(values)
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading."""
-        self._peak.leave()
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings."""
+        self._peak.leave(len(values))
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the largest reading."""
@@ -88,13 +95,13 @@ class Smallest(Measure):
         self._peak = Peak()
         """Of the readings with the opposite sign."""
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        self._peak.enter(-value)
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        self._peak.enter(map(neg, values))
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading."""
-        self._peak.leave()
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings."""
+        self._peak.leave(len(values))
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the smallest reading."""
@@ -120,15 +127,15 @@ class Range(Measure):
         self._low = Peak()
         """Of the readings with the opposite sign."""
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        self._high.enter(value)
-        self._low.enter(-value)
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        self._high.enter(values)
+        self._low.enter(map(neg, values))
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading."""
-        self._high.leave()
-        self._low.leave()
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings."""
+        self._high.leave(len(values))
+        self._low.leave(len(values))
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the difference; infinite if it is beyond any float."""

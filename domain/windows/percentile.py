@@ -2,6 +2,7 @@
 
 import heapq
 import math
+from collections.abc import Sequence
 
 from domain.timebase import Instant
 from domain.windows.contents import Contents
@@ -80,21 +81,23 @@ class Percentile(Measure):
         """Return how many numbers are kept, a bounded multiple of the readings of the window."""
         return len(self._low) + len(self._high)
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        entry = (value, self._entered)
-        is_low = self._low.n and entry < self._low.top(self._left)
-        (self._low if is_low else self._high).push(*entry)
-        self._entered += 1
-        self._balance()
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        for value in values:
+            entry = (value, self._entered)
+            is_low = self._low.n and entry < self._low.top(self._left)
+            (self._low if is_low else self._high).push(*entry)
+            self._entered += 1
+            self._balance()
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading."""
-        entry = (value, self._left)
-        is_low = self._low.n and entry <= self._low.top(self._left)
-        self._left += 1
-        (self._low if is_low else self._high).forget(self._left)
-        self._balance()
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings."""
+        for value in values:
+            entry = (value, self._left)
+            is_low = self._low.n and entry <= self._low.top(self._left)
+            self._left += 1
+            (self._low if is_low else self._high).forget(self._left)
+            self._balance()
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the percentile."""

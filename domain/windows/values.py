@@ -1,11 +1,12 @@
 """Mean, standard deviation, slope and time to a limit: statistics of exact sums."""
 
 import math
+from collections.abc import Sequence
 
 from domain.timebase import Instant, to_seconds
 from domain.windows.contents import Contents
 from domain.windows.crossings import earliest, falls_across_at
-from domain.windows.exact_sums import ExactLine, ExactSum
+from domain.windows.exact_sums import ExactLine, ExactSpread, ExactSum
 from domain.windows.measure import Measure
 from domain.windows.settings import Threshold
 
@@ -19,21 +20,32 @@ class Mean(Measure):
     def __init__(self) -> None:
         self._sum = ExactSum()
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        self._sum.enter(value)
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        self._sum.enter(values)
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading."""
-        self._sum.leave(value)
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings."""
+        self._sum.leave(values)
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the mean."""
         return self._sum.mean()
 
 
-class Deviation(Mean):
+class Deviation(Measure):
     """The standard deviation of the population."""
+
+    def __init__(self) -> None:
+        self._sum = ExactSpread()
+
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        self._sum.enter(values)
+
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings."""
+        self._sum.leave(values)
 
     def value(self, contents: Contents, now: Instant) -> float:
         """Return the standard deviation."""
@@ -46,13 +58,13 @@ class Slope(Measure):
     def __init__(self, start: Instant) -> None:
         self._line = ExactLine(start)
 
-    def enter(self, at: Instant, value: float) -> None:
-        """Take in a reading."""
-        self._line.enter(at, value)
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Take in readings."""
+        self._line.enter(times, values)
 
-    def leave(self, at: Instant, value: float) -> None:
-        """Leave out a reading."""
-        self._line.leave(at, value)
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        """Leave out readings."""
+        self._line.leave(times, values)
 
     def value(self, contents: Contents, now: Instant) -> float | None:
         """Return the slope; None: all readings came at once."""

@@ -4,12 +4,12 @@ import math
 
 from domain.timebase import Instant
 from domain.windows.arrivals import Age, Count, Gap, Rate, RateOfNewest, StuckFor
-from domain.windows.contents import Contents
 from domain.windows.crossings import earliest
 from domain.windows.measure import Measure
 from domain.windows.peaks import Largest, Range, Smallest
 from domain.windows.percentile import Percentile
 from domain.windows.settings import OF_ARRIVALS, Statistic, Threshold, WindowSettings
+from domain.windows.span import Span
 from domain.windows.values import Deviation, Mean, Slope, TimeToLimit
 
 
@@ -20,16 +20,19 @@ class Window:
     before. Time goes forward: no call may name an instant before that of an earlier one.
     """
 
-    def __init__(self, settings: WindowSettings, start: Instant) -> None:
+    def __init__(self, settings: WindowSettings, start: Instant, span: Span | None = None) -> None:
         """Begin empty.
 
         Args:
             settings: The window and its statistic.
             start: Since when readings would have been heard; silence counts from here.
+            span: Holds the readings, for other windows as well; None: for this one only.
         """
         self.settings = settings
-        self._contents = Contents(settings.length, _size(settings), start)
-        self._measure = _measure(settings, start)
+        self._span = span or Span(settings.length, size_of(settings), start)
+        self._contents = self._span.contents
+        what = (settings.statistic, settings.q, settings.limit, settings.min_r2)
+        self._measure = self._span.measure(what, lambda: _measure(settings, start))
         self._is_of_arrivals = settings.statistic in OF_ARRIVALS
         self._needs_all = settings.statistic not in {Statistic.AGE, Statistic.STUCK_FOR}
 
@@ -40,13 +43,7 @@ class Window:
             at: When it arrived.
             value: Finite.
         """
-        contents = self._contents
-        if contents.next_leaves_at <= at:
-            self._drop_expired(at)
-        if contents.is_full:
-            self._measure.leave(*contents.make_room())
-        contents.append(at, value)
-        self._measure.enter(at, value)
+        self._span.add(at, value)
 
     def value(self, now: Instant) -> float | None:
         """Return the statistic; None: it is unknown.
@@ -100,7 +97,7 @@ class Window:
         If it does and the statistic is unknown, the readings have none: there is no trend to a
         limit.
         """
-        self._drop_expired(now)
+        self._span.catch_up(now)
         if self._needs_all and not self._contents.is_complete(now):
             return False
         if self._is_of_arrivals:
@@ -109,11 +106,8 @@ class Window:
 
     def filled(self, now: Instant) -> float:
         """Return how much of the window has passed, from 0 to 1."""
+        self._span.catch_up(now)
         return self._contents.filled(now)
-
-    def _drop_expired(self, now: Instant) -> None:
-        while self._contents.next_leaves_at <= now:
-            self._measure.leave(*self._contents.pop())
 
     def _known_change_at(self, now: Instant) -> Instant | None:
         """Return when the statistic becomes known or unknown by time alone; None: it does not."""
@@ -126,7 +120,8 @@ class Window:
         return contents.leaves_at(spare) if spare >= 0 else None
 
 
-def _size(settings: WindowSettings) -> int:
+def size_of(settings: WindowSettings) -> int:
+    """Return how many readings a window holds at most."""
     if settings.size is not None:
         return settings.size
     return 1 if settings.statistic is Statistic.AGE else settings.most

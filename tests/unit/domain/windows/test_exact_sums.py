@@ -7,27 +7,25 @@ import numpy as np
 import pytest
 
 from domain.timebase import seconds
-from domain.windows.exact_sums import ExactLine, ExactSum
+from domain.windows.exact_sums import ExactLine, ExactSpread
 
 
-def _sum_of(*values: float) -> ExactSum:
-    total = ExactSum()
-    for value in values:
-        total.enter(value)
+def _sum_of(*values: float) -> ExactSpread:
+    total = ExactSpread()
+    total.enter(values)
     return total
 
 
 def _line_through(*points: tuple[float, float]) -> ExactLine:
     line = ExactLine(start=0)
     for at_s, value in points:
-        line.enter(seconds(at_s), value)
+        line.enter([seconds(at_s)], [value])
     return line
 
 
 def test_a_small_reading_is_not_lost_beside_a_large_one() -> None:
     total = _sum_of(1e16, 1.0, 1e-300)
-    total.leave(1e16)
-    total.leave(1.0)
+    total.leave([1e16, 1.0])
 
     assert (total.n, total.mean(), total.deviation()) == (1, 1e-300, 0.0)
 
@@ -35,8 +33,7 @@ def test_a_small_reading_is_not_lost_beside_a_large_one() -> None:
 def test_values_near_a_million_keep_the_digits_of_their_spread() -> None:
     values = [1e6 + math.sin(number) for number in range(1000)]
     total = _sum_of(*([3.7] * 1000), *values)
-    for _ in range(1000):
-        total.leave(3.7)
+    total.leave([3.7] * 1000)
 
     assert total.deviation() == pytest.approx(np.std(values), rel=1e-12)
     assert total.mean() == math.fsum(values) / 1000
@@ -70,7 +67,7 @@ def test_a_line_has_its_slope_per_second() -> None:
 
 def test_a_point_that_left_has_no_weight() -> None:
     line = _line_through((0.5, 1e12), (1.0, 0.1), (2.0, 0.2), (3.0, 0.3))
-    line.leave(seconds(0.5), 1e12)
+    line.leave([seconds(0.5)], [1e12])
 
     assert line.slope() == pytest.approx(0.1, rel=1e-15)
 
@@ -105,3 +102,10 @@ def test_a_bent_line_leaves_a_share_of_the_variance() -> None:
     left = _line_through(*zip(times, values, strict=True)).unexplained()
 
     assert left == pytest.approx(1.0 - np.corrcoef(times, values)[0, 1] ** 2)
+
+
+def test_a_unit_that_no_float_holds_is_none_the_less_exact() -> None:
+    total = _sum_of(5e-324, 1.0, 2.0**60)
+    total.leave([1.0, 2.0**60])
+
+    assert (total.n, total.mean()) == (1, 5e-324)

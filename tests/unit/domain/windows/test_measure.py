@@ -1,5 +1,7 @@
 """What a statistic does unless it says otherwise."""
 
+from collections.abc import Sequence
+
 from domain.timebase import Instant
 from domain.windows.contents import Contents
 from domain.windows.measure import Measure
@@ -12,10 +14,10 @@ class _Newest(Measure):
     def __init__(self) -> None:
         self._value = 0.0
 
-    def enter(self, at: Instant, value: float) -> None:
-        self._value = value
+    def enter(self, times: Sequence[Instant], values: Sequence[float]) -> None:
+        self._value = values[-1]
 
-    def leave(self, at: Instant, value: float) -> None:
+    def leave(self, times: Sequence[Instant], values: Sequence[float]) -> None:
         pass
 
     def value(self, contents: Contents, now: Instant) -> float:
@@ -24,8 +26,7 @@ class _Newest(Measure):
 
 def test_it_may_change_when_the_oldest_reading_leaves() -> None:
     contents = Contents(length=5, size=10, start=0)
-    contents.append(3, 1.0)
-    contents.append(4, 2.0)
+    contents.extend([3, 4], [1.0, 2.0])
 
     assert _Newest().changes_at(contents, now=4) == 8
     assert _Newest().crosses_at(contents, 4, above(1.0), value=2.0) == 8

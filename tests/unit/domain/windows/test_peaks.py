@@ -13,15 +13,15 @@ def test_a_peak_keeps_only_what_can_still_become_the_largest() -> None:
     """Each number is appended and removed once: the work does not grow with the window."""
     peak = Peak()
     for number in range(1000):
-        peak.enter(number)
+        peak.enter([number])
         assert (peak.largest, peak.place) == (number, number)
 
 
 def test_the_first_of_equal_numbers_may_leave() -> None:
     peak = Peak()
     for number in (3, 1, 3):
-        peak.enter(number)
-    peak.leave()
+        peak.enter([number])
+    peak.leave(1)
 
     assert (peak.largest, peak.place) == (3, 1)
 
@@ -80,3 +80,13 @@ def test_a_range_beyond_any_float_is_unknown_while_both_readings_are_there() -> 
     assert filled.value(after(3.0)) is None
     assert filled.crosses_at(above(1.0), after(3.0)) == after(5.0)
     assert filled.value(after(5.0)) == pytest.approx(0.7e308)
+
+
+def test_no_more_numbers_leave_than_there_are() -> None:
+    peak = Peak()
+    peak.enter([3, 1, 2])
+
+    assert peak.leave(2) == 2
+    assert (peak.largest, peak.place) == (2, 0)
+    assert peak.leave(2) == 1
+    assert not peak

@@ -43,10 +43,10 @@ def test_memory_is_bounded_when_readings_only_rise_or_fall(direction: int) -> No
     """Those that left lie at the bottom of a heap then, where nothing finds them."""
     percentile = Percentile(50.0)
     for number in range(20):
-        percentile.enter(number, float(direction * number))
+        percentile.enter([number], [float(direction * number)])
     for number in range(20, 5000):
-        percentile.leave(number, float(direction * (number - 20)))
-        percentile.enter(number, float(direction * number))
+        percentile.leave([number], [float(direction * (number - 20))])
+        percentile.enter([number], [float(direction * number)])
 
     assert percentile.entries < 100
 
