@@ -47,6 +47,11 @@ class Deadlines(Generic[KeyT]):
         self._drop_forgotten()
         return self._heap[0][0] if self._heap else None
 
+    def first(self) -> KeyT | None:
+        """Return whose deadline is the earliest; None: there is none."""
+        self._drop_forgotten()
+        return self._heap[0][2] if self._heap else None
+
     def pop_due(self, now: Instant) -> KeyT | None:
         """Remove the earliest deadline that has passed and return its key; None: none has passed.
 

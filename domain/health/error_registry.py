@@ -109,7 +109,8 @@ class ErrorRegistry:
         self._touched: dict[int, None] = dict.fromkeys(range(len(self._sources)))
         self._deadlines: Deadlines[int] = Deadlines()
         self._wakes: list[Instant | None] = [None] * len(self._sources)
-        """The deadline of each source."""
+        """The deadline of each source, or an earlier one if it was postponed."""
+        self._postponed: set[int] = set()
         self.renew()
 
     # --- what happens ----------------------------------------------------------------------------
@@ -117,6 +118,21 @@ class ErrorRegistry:
     def touch(self, source: int) -> None:
         """Note that a source has changed, or may have."""
         self._touched[source] = None
+
+    def is_touched(self, source: int) -> bool:
+        """Tell whether a source was touched since the last `renew`."""
+        return source in self._touched
+
+    def postpone(self, source: int, at: Instant | None) -> None:
+        """Note the deadline of a source of which nothing else changed; None: it has none.
+
+        Most are put off time and again. One that is looks to be due earlier until it comes up.
+        """
+        noted = self._wakes[source]
+        if noted is not None and (at is None or at >= noted):
+            self._postponed.add(source)
+        else:
+            self._set_deadline(source, at)
 
     def touched(self) -> list[int]:
         """Return the sources that were touched since the last `renew`, in their order."""
@@ -132,7 +148,9 @@ class ErrorRegistry:
 
     def judge(self, now: Instant) -> None:
         """Raise and clear the errors of the sources that are due."""
-        while (position := self._deadlines.pop_due(now)) is not None:
+        while (due := self.next_wake()) is not None and due <= now:
+            position = self._deadlines.pop_due(now)
+            assert position is not None
             self._wakes[position] = None
             self._sources[position].judge(now)
             self.touch(position)
@@ -202,6 +220,10 @@ class ErrorRegistry:
 
     def next_wake(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
+        while (first := self._deadlines.first()) in self._postponed:
+            assert first is not None
+            self._postponed.discard(first)
+            self._set_deadline(first, self._sources[first].wake_at())
         return self._deadlines.next()
 
     # --- inside ----------------------------------------------------------------------------------

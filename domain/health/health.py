@@ -20,6 +20,7 @@ from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
 from domain.health.error_causes import NO_CAUSES, ErrorCauses
 from domain.health.error_list import ErrorList
+from domain.health.health_changes import HealthChanges
 from domain.health.robot_errors import RobotErrors
 from domain.health.signal_monitor import StopCause
 from domain.health.signals import (
@@ -30,7 +31,7 @@ from domain.health.signals import (
     Recovery,
     SignalSettings,
 )
-from domain.health.state_manager import HealthChanges, StateManager
+from domain.health.state_manager import StateManager
 from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox

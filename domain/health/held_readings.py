@@ -52,7 +52,9 @@ class HeldReadings:
 
     def __init__(self, settings: SignalSettings) -> None:
         self.settings = settings
+        self._is_stop = settings.spec.is_stop
         self._by_source: dict[str, HeldReading] = {}
+        """Of a stop; the sources of any other signal are not kept apart."""
         self.newest: HeldReading | None = None
         """The reading that arrived last, from any source."""
 
@@ -66,14 +68,14 @@ class HeldReadings:
     @property
     def value(self) -> SignalValue | None:
         """Return the value in force: the last one, or true while a source presses a stop."""
-        if self.settings.spec.is_stop and self.pressing:
+        if self._is_stop and self.pressing:
             return True
         return None if self.newest is None else self.newest.value
 
     @property
     def pressing(self) -> tuple[HeldReading, ...]:
         """Return the readings that press a stop, the oldest first; empty for other signals."""
-        if not self.settings.spec.is_stop:
+        if not self._is_stop:
             return ()
         pressing = [held for held in self._by_source.values() if held.value is True]
         return tuple(sorted(pressing, key=lambda held: (held.since, held.source)))
@@ -83,9 +85,11 @@ class HeldReadings:
 
         A worse value is accepted however late it is, and a pressed stop is never rejected.
         """
+        if reading.stamp is None:
+            return None
         key = self._key(source)
-        held = self._by_source.get(key)
-        if held is None or held.newest_stamp is None or reading.stamp is None:
+        held = self._by_source.get(key) if self._is_stop else self.newest
+        if held is None or held.newest_stamp is None:
             return None
         if key == FURTHER_SOURCES:
             return None
@@ -101,45 +105,28 @@ class HeldReadings:
         held = self._by_source.get(self._key(source))
         return held is not None and held.value is True and reading.value is False
 
-    def take(self, reading: Reading, source: str, now: Instant) -> None:
-        """Hold a checked reading.
+    def take(self, reading: Reading, source: str, now: Instant) -> HeldReading:
+        """Hold a checked reading, and return what is held.
 
         Args:
             reading: Must have passed `behind`.
             source: Who measured.
             now: When it arrived.
         """
-        if not self.settings.spec.is_stop:
-            self._hold("", self.newest, reading, source, now)
-            return
+        if not self._is_stop:
+            self.newest = _held(self.newest, reading, source, now)
+            return self.newest
         key = self._key(source)
         if key == FURTHER_SOURCES:
             source = FURTHER_SOURCES
         # Appended at the end, so that the dictionary stays in order of arrival.
-        self._hold(key, self._by_source.pop(key, None), reading, source, now)
+        held = _held(self._by_source.pop(key, None), reading, source, now)
+        self.newest = self._by_source[key] = held
         self._forget_quiet_source()
-
-    def _hold(
-        self, key: str, held: HeldReading | None, reading: Reading, source: str, now: Instant
-    ) -> None:
-        """Hold a reading instead of the one that is held under a key."""
-        newest_stamp, since = reading.stamp, now
-        if newest_stamp is not None and newest_stamp > now + MAX_SKEW:
-            newest_stamp = None
-        if held is not None:
-            stamp = held.newest_stamp
-            if newest_stamp is None or (stamp is not None and stamp > newest_stamp):
-                newest_stamp = stamp
-            if held.value == reading.value:
-                since = held.since
-        self.newest = self._by_source[key] = HeldReading(
-            reading.value, source, now, reading.stamp, newest_stamp, since
-        )
+        return held
 
     def _key(self, source: str) -> str:
-        """Return under which name the readings of a source are held."""
-        if not self.settings.spec.is_stop:
-            return ""
+        """Return under which name the readings of a source of a stop are held."""
         if source in self._by_source:
             return source
         pressing = sum(held.value is True for held in self._by_source.values())
@@ -154,3 +141,17 @@ class HeldReadings:
         quiet = [key for key, held in self._by_source.items() if held.value is not True]
         if len(quiet) > MAX_SOURCES:
             del self._by_source[quiet[0]]
+
+
+def _held(held: HeldReading | None, reading: Reading, source: str, now: Instant) -> HeldReading:
+    """Return what is held of a reading that takes the place of another one."""
+    newest_stamp, since = reading.stamp, now
+    if newest_stamp is not None and newest_stamp > now + MAX_SKEW:
+        newest_stamp = None
+    if held is not None:
+        stamp = held.newest_stamp
+        if newest_stamp is None or (stamp is not None and stamp > newest_stamp):
+            newest_stamp = stamp
+        if held.value == reading.value:
+            since = held.since
+    return HeldReading(reading.value, source, now, reading.stamp, newest_stamp, since)

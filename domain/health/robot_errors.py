@@ -1,7 +1,8 @@
 """The robot's own errors in the list of all errors, as the state manager decides them."""
 
 from domain.health.error_list import NORMAL, ErrorList, Found
-from domain.health.state_manager import HealthChanges, StateManager
+from domain.health.health_changes import HealthChanges
+from domain.health.state_manager import StateManager
 from domain.snapshot import ErrorKey, ErrorState, SignalView
 from domain.timebase import Instant
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from domain.findings import Blocker, Fact
 from domain.health.error_slot import ErrorSlot
+from domain.health.good_range import good_range
 from domain.health.held_readings import HeldReading, HeldReadings
 from domain.health.signal_reasons import (
     kept_reason,
@@ -23,7 +24,7 @@ from domain.health.signals import (
     Recovery,
     SignalSettings,
 )
-from domain.inputs import Reading, SourceFault
+from domain.inputs import Reading, SignalValue, SourceFault
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
 
@@ -54,6 +55,8 @@ class SignalMonitor:
         """Which of the limits by mode is in force; until modes are known, that of the others."""
         self.settings = settings.with_limit(self.limit) if settings.limits else settings
         self.readings = HeldReadings(self.settings)
+        self._good = good_range(self.settings.bounds)
+        """Numbers that meet no bound while no error is on."""
         name, part = settings.spec.name, settings.part
         self._path = (name,) if part is None else (part, name)
         self._counts_last_good = settings.counts_from is CountsFrom.LAST_GOOD
@@ -96,9 +99,9 @@ class SignalMonitor:
             now: When it arrived.
         """
         before = self.readings.newest
-        self.readings.take(reading, source, now)
-        if self.is_calm and not self._met_by_readings():
-            if self.readings.newest != before:
+        after = self.readings.take(reading, source, now)
+        if self.is_calm and not after.skewed and self._is_good(reading.value):
+            if after != before:
                 self._note_change(None)
             return
         if self.fault is not None and self.fault.source == source:
@@ -152,6 +155,7 @@ class SignalMonitor:
         self.limit = limit
         self.settings = self.settings.with_limit(limit)
         self.readings.settings = self.settings
+        self._good = good_range(self.settings.bounds)
         self._facts = MappingProxyType(self._make_facts())
         was_on, self._cause, self._counting_since = self._cause is not None, None, None
         met, is_unknown = self._met_by_readings(), self.readings.value is None
@@ -211,6 +215,7 @@ class SignalMonitor:
             and not self.is_on
             and not self._engaged
             and self.fault is None
+            and not self.is_skewed
             and not self.settings.spec.is_stop
         )
         if view != before:
@@ -361,7 +366,7 @@ class SignalMonitor:
             None,
             None,
             None,
-            newest.skewed,
+            False,
             False,
             self._facts,
             None,
@@ -383,6 +388,13 @@ class SignalMonitor:
             for bound in self.settings.bounds
             if bound.is_met_by(value, error_is_on=bound is self._cause)
         ]
+
+    def _is_good(self, value: SignalValue) -> bool:
+        """Tell whether the value that is held meets no bound, and no error is on."""
+        if type(value) is not float:
+            return not self._met_by_readings()
+        lowest, highest = self._good
+        return lowest <= value <= highest
 
     def _is_due(self, bound: Bound, now: Instant) -> bool:
         if self._engaged:

@@ -5,9 +5,9 @@ there, decisions are made when a reading arrives or a time is reached, not at th
 """
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -18,7 +18,9 @@ from domain.errors import (
     UnknownSignalError,
 )
 from domain.findings import Blocker
-from domain.health.error_registry import ErrorChanges, ErrorRegistry
+from domain.health.error_registry import ErrorRegistry
+from domain.health.feed import Feed
+from domain.health.health_changes import Gathered, HealthChanges, Marks
 from domain.health.held_readings import HeldReadings
 from domain.health.monitor_graph import faults_of_monitors, fed_by, number_of
 from domain.health.signal_monitor import SignalMonitor, StopCause
@@ -37,103 +39,24 @@ from domain.snapshot import (
 from domain.timebase import Instant, to_seconds
 
 
-class Raised(NamedTuple):
-    """An error that was raised."""
+@dataclass(slots=True, eq=False)
+class _Signal:
+    """A signal, and what its readings go to."""
 
-    key: ErrorKey
-    reason: Blocker
-    """Its most urgent reason."""
-
-
-@dataclass(frozen=True, slots=True)
-class HealthChanges:
-    """What a call changed.
-
-    If an error is in both `raised` and `cleared`, it was cleared first if it is active now.
-    """
-
-    raised: tuple[Raised, ...] = ()
-    cleared: tuple[ErrorKey, ...] = ()
-    pending: tuple[tuple[str, str], ...] = ()
-    """Signals and errors whose time began to count."""
-    settled: tuple[tuple[str, str, bool], ...] = ()
-    """Signals and errors whose time stopped before the error was raised, and whether that was
-    because the signal became stale."""
-    signals: frozenset[str] = frozenset()
-    """Signals whose view changed."""
-    skewed: tuple[str, ...] = ()
-    """Signals whose sender's clock now differs from ours."""
-    errors: tuple[ErrorKey, ...] = ()
-    """Errors that were raised or cleared, began or ceased to be pending, or have other reasons."""
-    state_changed: bool = False
-    """Whether errors or reasons changed."""
+    name: str
+    position: int
+    """In the registry."""
+    monitor: SignalMonitor
+    feed: Feed | None
+    """None: no monitor is computed from it."""
+    fed: "list[_Computed]"
 
 
-@dataclass(slots=True)
-class _Gathered:
-    """Changes while they are being gathered."""
+class _Computed(NamedTuple):
+    """A monitor that is computed from another signal."""
 
-    raised: list[Raised] = field(default_factory=list)
-    cleared: list[ErrorKey] = field(default_factory=list)
-    pending: list[tuple[str, str]] = field(default_factory=list)
-    settled: list[tuple[str, str, bool]] = field(default_factory=list)
-    signals: set[str] = field(default_factory=set)
-    skewed: list[str] = field(default_factory=list)
-    errors: set[ErrorKey] = field(default_factory=set)
-    state_changed: bool = False
-
-    def build(self, order: Mapping[ErrorKey, int]) -> HealthChanges:
-        """Return the changes."""
-        return HealthChanges(
-            tuple(self.raised),
-            tuple(self.cleared),
-            tuple(self.pending),
-            tuple(self.settled),
-            frozenset(self.signals),
-            tuple(self.skewed),
-            tuple(sorted(self.errors, key=order.__getitem__)),
-            self.state_changed,
-        )
-
-    def add_errors(self, changes: ErrorChanges, registry: ErrorRegistry) -> None:
-        """Add what became of errors."""
-        self.raised += [Raised(key, registry.reason(key)) for key in changes.raised]
-        self.cleared += changes.cleared
-        self.errors.update(changes.explained)
-        self.state_changed = True
-
-    def add_signal(self, before: "_Told", after: "_Told", monitor: SignalMonitor) -> None:
-        """Add what became of a signal."""
-        name = monitor.settings.spec.name
-        self.signals.add(name)
-        if before.pending_error != after.pending_error:
-            self._add_pending(before.pending_error, after.pending_error, monitor)
-        if after.skewed and not before.skewed:
-            self.skewed.append(name)
-
-    def _add_pending(self, before: str | None, after: str | None, monitor: SignalMonitor) -> None:
-        name, part = monitor.settings.spec.name, monitor.settings.part
-        if before is not None:
-            self.errors.add(ErrorKey(part, before))
-            if before != monitor.view.error:
-                self.settled.append((name, before, monitor.view.stale))
-        if after is not None:
-            self.errors.add(ErrorKey(part, after))
-            self.pending.append((name, after))
-
-
-class _Told(NamedTuple):
-    """How a signal was when it was told last."""
-
-    version: int
-    pending_error: str | None
-    skewed: bool
-
-    @classmethod
-    def of(cls, monitor: SignalMonitor) -> "_Told":
-        if monitor.is_calm:
-            return cls(monitor.version, None, monitor.is_skewed)
-        return cls(monitor.version, monitor.pending_error, monitor.is_skewed)
+    signal: _Signal
+    monitor: WindowMonitor
 
 
 class _Trial:
@@ -167,23 +90,22 @@ class StateManager:
         """
         declared = tuple(settings)
         _check_declared(declared)
-        self._monitors = {item.spec.name: _monitor_of(item, start) for item in declared}
+        self._signals = _signals_of(declared, start)
+        self._monitors = {name: signal.monitor for name, signal in self._signals.items()}
         self._windows = {
             name: monitor
             for name, monitor in self._monitors.items()
             if isinstance(monitor, WindowMonitor)
         }
-        self._fed = fed_by(declared)
-        """By signal, the monitors that its readings go to."""
-        self._position = {name: position for position, name in enumerate(self._monitors)}
-        """By signal, its position in the registry."""
-        self._by_position = tuple(self._monitors.values())
+        self._by_position = tuple(self._signals.values())
         self._registry = ErrorRegistry(self._monitors.values())
         self._stops = {item.spec.name for item in declared if item.spec.is_stop}
         self.is_late = False
         """While set, deadlines that passed are not judged: what has arrived is taken in first."""
-        self._told = [_Told.of(monitor) for monitor in self._monitors.values()]
-        """By position, how the signals were when they were told last."""
+        self._told = [Marks.of(monitor) for monitor in self._monitors.values()]
+        """By position, what was told of the signals last."""
+        self._versions = [monitor.version for monitor in self._monitors.values()]
+        """By position, the versions of the signals that were told last."""
         self._checked_last: tuple[Readings | None, list[Reading]] = (None, [])
         """The readings that were checked last: `receive` follows `check`."""
         self._shown: Mapping[str, SignalView] | None = None
@@ -225,16 +147,20 @@ class StateManager:
         """Process readings that passed `check`."""
         checked = self._checked(readings)
         with self._gathering(now) as gathered:
-            fed: dict[str, None] = {}
+            fed: dict[int, _Computed] = {}
             for reading in checked:
-                monitor = self._touched(reading.signal)
-                monitor.receive(reading, readings.source, now)
-                if reading.signal in self._fed:
-                    value = number_of(monitor.settings.spec, reading.value)
-                    self._feed(reading.signal, value, now, fed)
-            for name in fed:
-                self._windows[name].compute(now)
-                self._touched(name)
+                signal, value = self._signals[reading.signal], reading.value
+                was_calm = signal.monitor.is_calm
+                signal.monitor.receive(reading, readings.source, now)
+                self._note(signal, gathered, was_calm=was_calm)
+                if signal.feed is not None:
+                    spec = signal.monitor.settings.spec
+                    number = value if type(value) is float else number_of(spec, value)
+                    self._feed(signal, signal.feed, number, now, fed)
+            for signal, monitor in fed.values():
+                was_calm = monitor.is_calm
+                monitor.compute(now)
+                self._note(signal, gathered, was_calm=was_calm)
         return self._build(gathered)
 
     def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> HealthChanges:
@@ -405,57 +331,95 @@ class StateManager:
         self._checked_last = (readings, checked)
         return checked
 
-    def _feed(self, signal: str, value: float, now: Instant, fed: dict[str, None]) -> None:
+    def _feed(
+        self, signal: _Signal, feed: Feed, value: float, now: Instant, fed: dict[int, _Computed]
+    ) -> None:
         """Hand a value to the monitors of a signal, and theirs to those that they feed.
 
         Args:
             signal: One that feeds monitors.
+            feed: What it feeds.
             value: Its reading.
             now: The current time.
-            fed: Takes the monitors.
+            fed: Takes the monitors, by their positions.
         """
-        for name in self._fed[signal]:
-            monitor = self._windows[name]
-            if monitor.feed(value, now):
-                fed[name] = None
-            if name in self._fed and (computed := monitor.window.value(now)) is not None:
-                self._feed(name, computed, now, fed)
+        if not feed.take(value, now):
+            return
+        is_chained = False
+        for each in signal.fed:
+            if each.monitor.feed(value, now):
+                fed[each.signal.position] = each
+            if each.signal.feed is not None:
+                is_chained = True
+                if (computed := each.monitor.window.value(now)) is not None:
+                    self._feed(each.signal, each.signal.feed, computed, now, fed)
+        if not is_chained:
+            feed.note_fed()
+
+    def _note(self, signal: _Signal, gathered: Gathered, *, was_calm: bool) -> None:
+        """Note what became of a signal; if it was and is calm, no more than its value changed."""
+        monitor, position = signal.monitor, signal.position
+        if not (was_calm and monitor.is_calm) or self._registry.is_touched(position):
+            self._registry.touch(position)
+            return
+        self._registry.postpone(position, monitor.wake_at())
+        if monitor.version != self._versions[position]:
+            self._versions[position] = monitor.version
+            gathered.signals.add(signal.name)
+            self._shown = None
 
     def _touched(self, name: str) -> SignalMonitor:
         """Return a monitor that is about to change."""
-        self._registry.touch(self._position[name])
-        return self._monitors[name]
+        signal = self._signals[name]
+        self._registry.touch(signal.position)
+        return signal.monitor
 
     @contextmanager
-    def _gathering(self, now: Instant) -> Iterator[_Gathered]:
+    def _gathering(self, now: Instant) -> Iterator[Gathered]:
         """Advance time to `now`, then run the body, and gather the changes."""
-        gathered = _Gathered()
+        gathered = Gathered()
         while not self.is_late and (due := self.wake_at()) is not None and due <= now:
             self._registry.judge(due)
             self._gather(gathered)
         yield gathered
         self._gather(gathered)
 
-    def _gather(self, gathered: _Gathered) -> None:
+    def _gather(self, gathered: Gathered) -> None:
         """Gather what became of the signals that were touched; the others are as they were."""
         for position in self._registry.touched():
-            before, monitor = self._told[position], self._by_position[position]
-            if monitor.version != before.version:
-                after = self._told[position] = _Told.of(monitor)
+            signal = self._by_position[position]
+            monitor = signal.monitor
+            if monitor.version != self._versions[position]:
+                self._versions[position] = monitor.version
+                before, after = self._told[position], Marks.of(monitor)
+                self._told[position] = after
                 gathered.add_signal(before, after, monitor)
                 self._shown = None
         changes = self._registry.renew()
         if changes.explained:
             gathered.add_errors(changes, self._registry)
 
-    def _build(self, gathered: _Gathered) -> HealthChanges:
+    def _build(self, gathered: Gathered) -> HealthChanges:
         return gathered.build(self._registry.order)
 
 
-def _monitor_of(settings: SignalSettings, start: Instant) -> SignalMonitor:
-    if settings.monitor is None:
-        return SignalMonitor(settings, start)
-    return WindowMonitor(settings, settings.monitor, start)
+def _signals_of(declared: Sequence[SignalSettings], start: Instant) -> dict[str, _Signal]:
+    """Return the signals by name, each with the monitors that its readings go to."""
+    feeds = {name: Feed(start) for name in fed_by(declared)}
+    signals: dict[str, _Signal] = {}
+    computed: list[_Computed] = []
+    for position, item in enumerate(declared):
+        name = item.spec.name
+        if item.monitor is None:
+            monitor = SignalMonitor(item, start)
+        else:
+            monitor = WindowMonitor(item, item.monitor, feeds[item.monitor.of], start)
+        signal = signals[name] = _Signal(name, position, monitor, feeds.get(name), [])
+        if isinstance(monitor, WindowMonitor):
+            computed.append(_Computed(signal, monitor))
+    for each in computed:
+        signals[each.monitor.of].fed.append(each)
+    return signals
 
 
 def _check_declared(declared: tuple[SignalSettings, ...]) -> None:

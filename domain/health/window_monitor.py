@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 
 from domain.findings import Blocker
+from domain.health.feed import Feed
+from domain.health.good_range import GoodRange
 from domain.health.held_readings import HeldReading
 from domain.health.signal_monitor import SignalMonitor
 from domain.health.signal_reasons import unknown_reason
@@ -12,7 +14,6 @@ from domain.snapshot import MonitorView
 from domain.timebase import Instant, seconds
 from domain.windows.crossings import earliest
 from domain.windows.settings import OF_ARRIVALS, Statistic, Threshold
-from domain.windows.window import Window
 
 SOURCE = "monitor"
 """Source of the values of all monitors."""
@@ -51,9 +52,20 @@ class WindowMonitor(SignalMonitor):
     long as readings are missing.
     """
 
-    def __init__(self, settings: SignalSettings, monitor: MonitorSettings, start: Instant) -> None:
+    def __init__(
+        self, settings: SignalSettings, monitor: MonitorSettings, feed: Feed, start: Instant
+    ) -> None:
+        """Begin to listen.
+
+        Args:
+            settings: The signal that it is.
+            monitor: What it computes.
+            feed: The readings that it has.
+            start: The current time.
+        """
         self.of = monitor.of
-        self.window = Window(monitor.window, start)
+        self.window = feed.windows.window(monitor.window)
+        self._feed = feed
         self._statistic = monitor.window.statistic
         self._changes_with_time = (
             monitor.window.length is not None
@@ -66,28 +78,35 @@ class WindowMonitor(SignalMonitor):
         """When readings were taken account of last."""
         self._value_known: SignalValue | None = None
         """The last value that was known."""
-        self._owed_at: Instant | None = None
+        self.owed_at: Instant | None = None
         """When a reading has to be taken account of; None: all are."""
         self._crosses_at: Instant | None = None
         """When time alone may take the value across a bound; None: it cannot."""
         self._shown_at: Instant | None = None
         """When the value has to be computed to be shown; None: time does not change it."""
         super().__init__(settings, start)
+        feed.join(self)
         self.judge(start)
 
+    @property
+    def harmless(self) -> GoodRange:
+        """Return the readings that take its value across no bound at once."""
+        return self._good if self._statistic in _AMONG_READINGS else GoodRange()
+
     def feed(self, value: float, now: Instant) -> bool:
-        """Take in a reading, and tell whether `compute` has to follow after those beside it."""
-        self.window.add(now, value)
+        """Note a reading; tell whether `compute` has to follow after those beside it."""
         self._was_fed = True
-        is_new, owed_at = self._owed_at is None, self._owed_at
+        is_new, owed_at = self.owed_at is None, self.owed_at
         if owed_at is None:
             owed_at = max(now, self._computed_at + COMPUTED_EVERY)
-        self._owed_at = now if self._is_beyond_bound(value) else owed_at
-        return is_new or self._owed_at <= now
+        lowest, highest = self.harmless
+        is_beyond_bound = self._cause is None and not lowest <= value <= highest
+        self.owed_at = now if is_beyond_bound else owed_at
+        return is_new or self.owed_at <= now
 
     def compute(self, now: Instant) -> None:
         """Take account of the readings, unless the value was computed only just now."""
-        if self._owed_at is not None and now >= self._owed_at:
+        if self.owed_at is not None and now >= self.owed_at:
             self.judge(now)
 
     def judge(self, now: Instant) -> None:
@@ -101,7 +120,7 @@ class WindowMonitor(SignalMonitor):
             # is: no trend leads to the limit any more.
             cause = None if self.window.has_enough(now) else self._cause
             self._judge([] if cause is None else [cause], now)
-        elif self.is_calm and not self._is_bad(value):
+        elif self.is_calm and self._is_good(value):
             is_same = self._was_fed and self.readings.newest is not None
             if self._hold(value, now):
                 self._note_change(None)
@@ -111,7 +130,8 @@ class WindowMonitor(SignalMonitor):
         self._plan(now, is_same=is_same)
         if self._was_fed:
             self._computed_at = now
-        self._owed_at, self._was_fed = None, False
+        self.owed_at, self._was_fed = None, False
+        self._feed.note_judged()
 
     def set_limit(self, limit: ModeLimit | None, now: Instant) -> None:
         """Put another limit in force, and judge the value anew; see `SignalMonitor`."""
@@ -122,10 +142,11 @@ class WindowMonitor(SignalMonitor):
         else:
             self._hold(value, now)
         super().set_limit(limit, now)
+        self._feed.note_harmless()
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        owed_at = None if self._owed_at is None else self._computed_at + LATEST
+        owed_at = None if self.owed_at is None else self._computed_at + LATEST
         at = earliest(owed_at, self._crosses_at, self._shown_at)
         return at if self.is_calm else earliest(at, super().wake_at())
 
@@ -175,13 +196,6 @@ class WindowMonitor(SignalMonitor):
     def _lose_value(self) -> None:
         self.readings.newest = None
         self._counting_since = None
-
-    def _is_bad(self, value: float) -> bool:
-        return any(bound.is_met_by(value) for bound in self.settings.bounds)
-
-    def _is_beyond_bound(self, value: float) -> bool:
-        """Tell whether a reading may take the value across a bound at once."""
-        return self._statistic in _AMONG_READINGS and self._cause is None and self._is_bad(value)
 
     def _plan(self, now: Instant, *, is_same: bool) -> None:
         """Note when the value has to be computed again without a reading.

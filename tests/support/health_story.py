@@ -3,9 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from domain.health.health_changes import HealthChanges
 from domain.health.signal_monitor import StopCause
 from domain.health.signals import SignalSettings, default_signals
-from domain.health.state_manager import HealthChanges, StateManager
+from domain.health.state_manager import StateManager
 from domain.inputs import Reading, Readings, SignalValue
 from domain.snapshot import ErrorKey, TaskStatus
 from domain.timebase import seconds

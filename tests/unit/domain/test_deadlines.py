@@ -139,3 +139,13 @@ def test_shared_deadlines_agree_with_a_plain_table(steps: list[tuple[str, int | 
         due = deadlines.pop_due(now)
         assert due == tuple(key for key, at in table.items() if at == now)
         assert not deadlines.pop_due(now)
+
+
+def test_the_earliest_is_told_by_name() -> None:
+    deadlines = Deadlines[str]()
+    assert deadlines.first() is None
+    deadlines.set("late", 7)
+    deadlines.set("early", 5)
+    assert deadlines.first() == "early"
+    deadlines.set("early", 9)
+    assert deadlines.first() == "late"

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from domain.errors import OutdatedReadingError
 from domain.findings import Blocker
+from domain.health.health_changes import HealthChanges
 from domain.health.signal_monitor import StopCause
 from domain.health.signals import (
     STALE_DATA,
@@ -21,7 +22,7 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
-from domain.health.state_manager import HealthChanges, StateManager
+from domain.health.state_manager import StateManager
 from domain.inputs import Reading, Readings, SignalValue
 from domain.snapshot import ErrorKey, SignalView, SystemState, TaskStatus
 from domain.timebase import Instant, seconds, to_seconds

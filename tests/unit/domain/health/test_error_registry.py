@@ -155,3 +155,35 @@ def test_an_error_has_one_bit() -> None:
 
     with pytest.raises(InvalidValueError, match="128 and 256"):
         ErrorRegistry([Door(0), Hatch(0)])
+
+
+def test_a_deadline_that_is_put_off_is_looked_up_when_it_comes_up() -> None:
+    doors = Door(opens_at=5), Door(opens_at=7)
+    registry = ErrorRegistry(doors)
+    doors[0].opens_at = 9
+    registry.postpone(0, 9)
+    assert registry.next_wake() == 7
+    doors[1].opens_at = None
+    registry.postpone(1, None)
+    assert registry.next_wake() == 9
+    registry.judge(8)
+    assert not doors[0].is_open
+    registry.judge(9)
+    assert doors[0].is_open
+
+
+def test_a_deadline_that_comes_earlier_is_not_put_off() -> None:
+    door = Door(opens_at=5)
+    registry = ErrorRegistry([door])
+    registry.postpone(0, None)
+    door.opens_at = 3
+    registry.postpone(0, 3)
+    assert registry.next_wake() == 3
+
+
+def test_a_source_is_touched_until_that_is_taken_over() -> None:
+    registry = joined(Door(opens_at=5), Door(opens_at=7))
+    registry.touch(1)
+    assert (registry.is_touched(0), registry.is_touched(1)) == (False, True)
+    registry.renew()
+    assert not registry.is_touched(1)

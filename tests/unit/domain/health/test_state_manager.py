@@ -10,6 +10,7 @@ from domain.errors import (
     UnknownErrorNameError,
     UnknownSignalError,
 )
+from domain.health.health_changes import HealthChanges
 from domain.health.signals import (
     STALE_DATA,
     Bound,
@@ -20,7 +21,7 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
-from domain.health.state_manager import HealthChanges, StateManager
+from domain.health.state_manager import StateManager
 from domain.inputs import Reading
 from domain.snapshot import ErrorKey, SystemState, TaskStatus
 from domain.timebase import seconds
