@@ -6,7 +6,7 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
@@ -393,6 +393,10 @@ class Supervision:
             UnknownSignalError: It is not declared.
         """
         return self._health.signal(name)
+
+    def signals_named(self, names: Iterable[str]) -> dict[str, SignalView]:
+        """Return several signals, as `signal` does, in the order of the names."""
+        return self._health.signals_named(names)
 
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""

@@ -123,16 +123,25 @@ class ErrorRegistry:
         """Tell whether a source was touched since the last `renew`."""
         return source in self._touched
 
-    def postpone(self, source: int, at: Instant | None) -> None:
-        """Note the deadline of a source of which nothing else changed; None: it has none.
+    def postpone(self, source: int) -> None:
+        """Note that a source of which nothing else changed has a later deadline, or none.
 
-        Most are put off time and again. One that is looks to be due earlier until it comes up.
+        Most are put off time and again, and so it is looked up when the earlier one comes up.
         """
+        self._postponed.add(source)
+
+    def replan(self, source: int, at: Instant | None) -> None:
+        """Note the deadline of a source of which nothing else changed; None: it has none."""
         noted = self._wakes[source]
         if noted is not None and (at is None or at >= noted):
             self._postponed.add(source)
         else:
             self._set_deadline(source, at)
+
+    def take_out(self, source: int) -> None:
+        """Note that a source is judged by somebody else now, as if it were due."""
+        self._set_deadline(source, None)
+        self.touch(source)
 
     def touched(self) -> list[int]:
         """Return the sources that were touched since the last `renew`, in their order."""

@@ -4,6 +4,7 @@ from typing import Protocol
 
 from domain.health.good_range import GoodRange, good_in_all
 from domain.timebase import Instant
+from domain.windows.crossings import earliest
 from domain.windows.shared import SharedWindows
 
 
@@ -20,8 +21,13 @@ class Fed(Protocol):
         """Return when a reading has to be taken account of; None: all are."""
         ...
 
+    @property
+    def owed_until(self) -> Instant | None:
+        """Return when it has to be even if no other reading comes; None: all are."""
+        ...
+
     def feed(self, value: float, now: Instant) -> bool:
-        """Note a reading, and tell whether something follows from it."""
+        """Note a reading, and tell whether it has to be taken account of now."""
         ...
 
 
@@ -65,5 +71,8 @@ class Feed:
 
     def note_fed(self) -> None:
         """Note that all monitors were fed: they wait until the first of them is due."""
-        due = [monitor.owed_at for monitor in self._monitors]
-        self._waits_until = min((at for at in due if at is not None), default=0)
+        self._waits_until = earliest(*[monitor.owed_at for monitor in self._monitors]) or 0
+
+    def owed_until(self) -> Instant | None:
+        """Return when a monitor has to take account of a reading at the latest; None: none has."""
+        return earliest(*[monitor.owed_until for monitor in self._monitors])

@@ -267,6 +267,10 @@ class Health(Concern):
         """
         return self._manager.signal(name)
 
+    def signals_named(self, names: Iterable[str]) -> dict[str, SignalView]:
+        """Return several signals, as `signal` does, in the order of the names."""
+        return self._manager.signals_named(names)
+
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals in the order of declaration; the same object until one changes."""
         return self._manager.signals()

@@ -152,12 +152,7 @@ class SignalSpec:
                 raise self._invalid(f"one of {', '.join(self.members)}", value)
 
     def _checked_number(self, value: object) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._invalid("a number", value)
-        try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
+        number = value if type(value) is float else self._as_float(value)
         if not math.isfinite(number):
             raise self._invalid("a finite number", number)
         if self.minimum is not None and number < self.minimum:
@@ -168,7 +163,15 @@ class SignalSpec:
             if number > self.maximum + _rounding(self.maximum):
                 raise self._invalid(f"at most {self.maximum:g}", number)
             number = self.maximum
-        return number + 0.0
+        return number or 0.0
+
+    def _as_float(self, value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self._invalid("a number", value)
+        try:
+            return float(value)
+        except OverflowError:
+            return math.inf
 
     def _invalid(self, wanted: str, value: object) -> InvalidValueError:
         return InvalidValueError(f"{self.name} must be {wanted}, not {value!r:.40}", self.name)

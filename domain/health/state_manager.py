@@ -23,6 +23,7 @@ from domain.health.feed import Feed
 from domain.health.health_changes import Gathered, HealthChanges, Marks
 from domain.health.held_readings import HeldReadings
 from domain.health.monitor_graph import faults_of_monitors, fed_by, number_of
+from domain.health.owing import Owing
 from domain.health.signal_monitor import SignalMonitor, StopCause
 from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, ModeLimit, SignalSettings
 from domain.health.window_monitor import WindowMonitor
@@ -37,6 +38,7 @@ from domain.snapshot import (
     TaskStatus,
 )
 from domain.timebase import Instant, to_seconds
+from domain.windows.crossings import earliest
 
 
 @dataclass(slots=True, eq=False)
@@ -99,6 +101,8 @@ class StateManager:
         }
         self._by_position = tuple(self._signals.values())
         self._registry = ErrorRegistry(self._monitors.values())
+        feeds = {name: signal.feed for name, signal in self._signals.items()}
+        self._owing = Owing({name: feed for name, feed in feeds.items() if feed is not None})
         self._stops = {item.spec.name for item in declared if item.spec.is_stop}
         self.is_late = False
         """While set, deadlines that passed are not judged: what has arrived is taken in first."""
@@ -157,10 +161,10 @@ class StateManager:
                     spec = signal.monitor.settings.spec
                     number = value if type(value) is float else number_of(spec, value)
                     self._feed(signal, signal.feed, number, now, fed)
-            for signal, monitor in fed.values():
-                was_calm = monitor.is_calm
-                monitor.compute(now)
-                self._note(signal, gathered, was_calm=was_calm)
+            for each in fed.values():
+                was_calm = each.monitor.is_calm
+                each.monitor.judge(now)
+                self._note(each.signal, gathered, was_calm=was_calm)
         return self._build(gathered)
 
     def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> HealthChanges:
@@ -234,7 +238,7 @@ class StateManager:
 
     def wake_at(self) -> Instant | None:
         """Return the earliest instant at which time alone changes something; None: never."""
-        return self._registry.next_wake()
+        return earliest(self._registry.next_wake(), self._owing.next())
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -297,6 +301,10 @@ class StateManager:
         """
         return self._monitor(name).view
 
+    def signals_named(self, names: Iterable[str]) -> dict[str, SignalView]:
+        """Return several signals, as `signal` does, in the order of the names."""
+        return {name: self._monitor(name).view for name in names}
+
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals in the order of declaration; the same object until one changes."""
         if self._shown is None:
@@ -326,7 +334,7 @@ class StateManager:
                 words = f"{reading.signal} is computed from {settings.monitor.of}; post that"
                 raise InvalidValueError(words, reading.signal)
             value = settings.spec.checked(reading.value)
-            is_same = type(value) is type(reading.value) and value == reading.value and value
+            is_same = value is reading.value
             checked.append(reading if is_same else Reading(reading.signal, value, reading.stamp))
         self._checked_last = (readings, checked)
         return checked
@@ -341,7 +349,7 @@ class StateManager:
             feed: What it feeds.
             value: Its reading.
             now: The current time.
-            fed: Takes the monitors, by their positions.
+            fed: Takes the monitors that are to be judged, by their positions.
         """
         if not feed.take(value, now):
             return
@@ -355,6 +363,7 @@ class StateManager:
                     self._feed(each.signal, each.signal.feed, computed, now, fed)
         if not is_chained:
             feed.note_fed()
+        self._owing.note(signal.name)
 
     def _note(self, signal: _Signal, gathered: Gathered, *, was_calm: bool) -> None:
         """Note what became of a signal; if it was and is calm, no more than its value changed."""
@@ -362,7 +371,11 @@ class StateManager:
         if not (was_calm and monitor.is_calm) or self._registry.is_touched(position):
             self._registry.touch(position)
             return
-        self._registry.postpone(position, monitor.wake_at())
+        if isinstance(monitor, WindowMonitor):
+            self._registry.replan(position, monitor.wake_at())
+        else:
+            # A reading makes it stale later.
+            self._registry.postpone(position)
         if monitor.version != self._versions[position]:
             self._versions[position] = monitor.version
             gathered.signals.add(signal.name)
@@ -379,10 +392,19 @@ class StateManager:
         """Advance time to `now`, then run the body, and gather the changes."""
         gathered = Gathered()
         while not self.is_late and (due := self.wake_at()) is not None and due <= now:
+            self._judge_owing(due)
             self._registry.judge(due)
             self._gather(gathered)
         yield gathered
         self._gather(gathered)
+
+    def _judge_owing(self, now: Instant) -> None:
+        """Let monitors take account of readings that were not followed by others."""
+        while (name := self._owing.due(now)) is not None:
+            for signal, monitor in self._signals[name].fed:
+                if monitor.owed_until is not None and monitor.owed_until <= now:
+                    self._registry.take_out(signal.position)
+                    monitor.judge(now)
 
     def _gather(self, gathered: Gathered) -> None:
         """Gather what became of the signals that were touched; the others are as they were."""

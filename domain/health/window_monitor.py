@@ -79,35 +79,32 @@ class WindowMonitor(SignalMonitor):
         self._value_known: SignalValue | None = None
         """The last value that was known."""
         self.owed_at: Instant | None = None
-        """When a reading has to be taken account of; None: all are."""
+        """When the next reading has to be taken account of; None: all are."""
+        self.harmless = GoodRange()
+        """The readings that take its value across no bound at once."""
         self._crosses_at: Instant | None = None
         """When time alone may take the value across a bound; None: it cannot."""
         self._shown_at: Instant | None = None
         """When the value has to be computed to be shown; None: time does not change it."""
         super().__init__(settings, start)
+        self._note_harmless()
         feed.join(self)
         self.judge(start)
 
-    @property
-    def harmless(self) -> GoodRange:
-        """Return the readings that take its value across no bound at once."""
-        return self._good if self._statistic in _AMONG_READINGS else GoodRange()
-
     def feed(self, value: float, now: Instant) -> bool:
-        """Note a reading; tell whether `compute` has to follow after those beside it."""
+        """Note a reading; tell whether `judge` has to follow after those beside it."""
         self._was_fed = True
-        is_new, owed_at = self.owed_at is None, self.owed_at
-        if owed_at is None:
-            owed_at = max(now, self._computed_at + COMPUTED_EVERY)
         lowest, highest = self.harmless
-        is_beyond_bound = self._cause is None and not lowest <= value <= highest
-        self.owed_at = now if is_beyond_bound else owed_at
-        return is_new or self.owed_at <= now
+        if self._cause is None and not lowest <= value <= highest:
+            self.owed_at = now
+        elif self.owed_at is None:
+            self.owed_at = max(now, self._computed_at + COMPUTED_EVERY)
+        return self.owed_at <= now
 
-    def compute(self, now: Instant) -> None:
-        """Take account of the readings, unless the value was computed only just now."""
-        if self.owed_at is not None and now >= self.owed_at:
-            self.judge(now)
+    @property
+    def owed_until(self) -> Instant | None:
+        """Return when a reading has to be taken account of even without another one."""
+        return None if self.owed_at is None else self._computed_at + LATEST
 
     def judge(self, now: Instant) -> None:
         """Compute the value as of `now`, and what follows from it."""
@@ -142,12 +139,15 @@ class WindowMonitor(SignalMonitor):
         else:
             self._hold(value, now)
         super().set_limit(limit, now)
+        self._note_harmless()
         self._feed.note_harmless()
 
     def wake_at(self) -> Instant | None:
-        """Return the next instant at which time alone changes something; None: never."""
-        owed_at = None if self.owed_at is None else self._computed_at + LATEST
-        at = earliest(owed_at, self._crosses_at, self._shown_at)
+        """Return the next instant at which time alone changes something; None: never.
+
+        When readings are owed, `owed_until` tells.
+        """
+        at = earliest(self._crosses_at, self._shown_at)
         return at if self.is_calm else earliest(at, super().wake_at())
 
     def reasons(self) -> Iterator[Blocker]:
@@ -192,6 +192,9 @@ class WindowMonitor(SignalMonitor):
         self.readings.newest = HeldReading(value, SOURCE, now, None, None, since)
         self._value_known = value
         return True
+
+    def _note_harmless(self) -> None:
+        self.harmless = self._good if self._statistic in _AMONG_READINGS else GoodRange()
 
     def _lose_value(self) -> None:
         self.readings.newest = None

@@ -161,10 +161,10 @@ def test_a_deadline_that_is_put_off_is_looked_up_when_it_comes_up() -> None:
     doors = Door(opens_at=5), Door(opens_at=7)
     registry = ErrorRegistry(doors)
     doors[0].opens_at = 9
-    registry.postpone(0, 9)
+    registry.postpone(0)
     assert registry.next_wake() == 7
     doors[1].opens_at = None
-    registry.postpone(1, None)
+    registry.replan(1, None)
     assert registry.next_wake() == 9
     registry.judge(8)
     assert not doors[0].is_open
@@ -175,9 +175,9 @@ def test_a_deadline_that_is_put_off_is_looked_up_when_it_comes_up() -> None:
 def test_a_deadline_that_comes_earlier_is_not_put_off() -> None:
     door = Door(opens_at=5)
     registry = ErrorRegistry([door])
-    registry.postpone(0, None)
+    registry.replan(0, None)
     door.opens_at = 3
-    registry.postpone(0, 3)
+    registry.replan(0, 3)
     assert registry.next_wake() == 3
 
 
@@ -187,3 +187,13 @@ def test_a_source_is_touched_until_that_is_taken_over() -> None:
     assert (registry.is_touched(0), registry.is_touched(1)) == (False, True)
     registry.renew()
     assert not registry.is_touched(1)
+
+
+def test_a_source_that_is_taken_out_is_not_due() -> None:
+    door = Door(opens_at=5)
+    registry = ErrorRegistry([door, Door(opens_at=7)])
+    registry.take_out(0)
+    assert registry.next_wake() == 7
+    assert registry.touched() == [0]
+    registry.renew()
+    assert registry.next_wake() == 5, "it was not judged"

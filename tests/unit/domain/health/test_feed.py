@@ -15,10 +15,13 @@ class Monitor:
         self._joined = feed
         feed.join(self)
 
+    @property
+    def owed_until(self) -> Instant | None:
+        return None if self.owed_at is None else self.owed_at + 50
+
     def feed(self, value: float, now: Instant) -> bool:
-        is_new = self.owed_at is None
         self.owed_at = now if value > self.harmless.highest else now + 50
-        return is_new
+        return self.owed_at <= now
 
     def judge(self) -> None:
         self.owed_at = None
@@ -79,3 +82,13 @@ def test_every_reading_is_in_the_windows() -> None:
         fed(feed, monitor, value=1.0, now=now)
 
     assert count.value(130) == 3
+
+
+def test_the_first_monitor_that_owes_says_until_when() -> None:
+    feed = Feed(start=0)
+    monitors = Monitor(feed), Monitor(feed)
+    assert feed.owed_until() is None
+    fed(feed, *monitors, value=1.0, now=10)
+    monitors[0].owed_at = 30
+
+    assert feed.owed_until() == 80
