@@ -318,7 +318,7 @@ class Health(Concern):
             self.error_list.note_told(key, self._decided_by)
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
-        for signal in changes.signals & self._waiting:
+        for signal in sorted(changes.signals & self._waiting):
             self._keep(signal)
 
     def _is_silenced(self, key: ErrorKey) -> bool:

@@ -130,6 +130,9 @@ class StateManager:
         names = {reading.signal for reading in checked}
         trial = _Trial(self._monitors) if len(names) < len(checked) else None
         for reading in checked:
+            if reading.stamp is None and trial is None:
+                # Without a stamp it is behind none.
+                continue
             name = reading.signal
             held = self._monitors[name].readings if trial is None else trial.readings(name)
             behind = held.behind(reading, readings.source)
@@ -329,7 +332,8 @@ class StateManager:
             return self._checked_last[1]
         checked = []
         for reading in readings.items:
-            settings = self._monitor(reading.signal).settings
+            monitor = self._monitors.get(reading.signal) or self._monitor(reading.signal)
+            settings = monitor.settings
             if settings.monitor is not None:
                 words = f"{reading.signal} is computed from {settings.monitor.of}; post that"
                 raise InvalidValueError(words, reading.signal)
@@ -353,17 +357,20 @@ class StateManager:
         """
         if not feed.take(value, now):
             return
-        is_chained = False
+        is_chained = is_owed_longer = False
         for each in signal.fed:
             if each.monitor.feed(value, now):
                 fed[each.signal.position] = each
+            else:
+                is_owed_longer = True
             if each.signal.feed is not None:
                 is_chained = True
                 if (computed := each.monitor.window.value(now)) is not None:
                     self._feed(each.signal, each.signal.feed, computed, now, fed)
         if not is_chained:
             feed.note_fed()
-        self._owing.note(signal.name)
+        if is_owed_longer:
+            self._owing.note(signal.name)
 
     def _note(self, signal: _Signal, gathered: Gathered, *, was_calm: bool) -> None:
         """Note what became of a signal; if it was and is calm, no more than its value changed."""

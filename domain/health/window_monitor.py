@@ -82,12 +82,14 @@ class WindowMonitor(SignalMonitor):
         """When the next reading has to be taken account of; None: all are."""
         self.harmless = GoodRange()
         """The readings that take its value across no bound at once."""
+        self._is_put_off = False
+        """Whether no good reading lets time take the value across a bound earlier."""
         self._crosses_at: Instant | None = None
         """When time alone may take the value across a bound; None: it cannot."""
         self._shown_at: Instant | None = None
         """When the value has to be computed to be shown; None: time does not change it."""
         super().__init__(settings, start)
-        self._note_harmless()
+        self._note_bounds()
         feed.join(self)
         self.judge(start)
 
@@ -139,7 +141,7 @@ class WindowMonitor(SignalMonitor):
         else:
             self._hold(value, now)
         super().set_limit(limit, now)
-        self._note_harmless()
+        self._note_bounds()
         self._feed.note_harmless()
 
     def wake_at(self) -> Instant | None:
@@ -193,8 +195,10 @@ class WindowMonitor(SignalMonitor):
         self._value_known = value
         return True
 
-    def _note_harmless(self) -> None:
+    def _note_bounds(self) -> None:
+        """Note what follows from the bounds alone."""
         self.harmless = self._good if self._statistic in _AMONG_READINGS else GoodRange()
+        self._is_put_off = self._is_put_off_by_readings()
 
     def _lose_value(self) -> None:
         self.readings.newest = None
@@ -209,7 +213,7 @@ class WindowMonitor(SignalMonitor):
                 when time alone takes it across a bound, or leave that as it is.
         """
         crosses_at = self._crosses_at
-        if is_same and self._is_put_off_by_readings:
+        if is_same and self._is_put_off:
             self._shown_at = now + SHOWN_EVERY if self._changes_with_time else None
             if crosses_at is None or crosses_at > now:
                 if crosses_at is not None and self._statistic in _MOVED_BY_EACH:
@@ -220,7 +224,6 @@ class WindowMonitor(SignalMonitor):
         crossings = (self._crossing(bound, now) for bound in self.settings.bounds)
         self._crosses_at = None if changes_at is None else earliest(*crossings)
 
-    @property
     def _is_put_off_by_readings(self) -> bool:
         """Tell whether no good reading lets time take the value across a bound earlier."""
         if self._statistic is Statistic.GAP:

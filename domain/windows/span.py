@@ -47,19 +47,27 @@ class Span:
         self._new_times.append(at)
         self._new_values.append(value)
         if len(self._new_times) >= _MOST_NEW:
-            self.catch_up(at)
+            self.take_over()
 
     def catch_up(self, now: Instant) -> None:
         """Take over the new readings, and leave out those that are too old."""
         if self._new_times:
-            times, values = self._new_times, self._new_values
-            self._new_times, self._new_values = [], []
-            if self.contents.is_exceeded_by(len(times)):
-                self._take_one_by_one(times, values)
-            else:
-                self._take(times, values)
+            self.take_over()
         if self.contents.next_leaves_at <= now:
             self._leave(*self.contents.pop_until(now))
+
+    def take_over(self) -> None:
+        """Take over the new readings, and leave out what was too old when they came."""
+        times, values = self._new_times, self._new_values
+        if not times:
+            return
+        self._new_times, self._new_values = [], []
+        if self.contents.is_exceeded_by(len(times)):
+            self._take_one_by_one(times, values)
+        else:
+            self._take(times, values)
+        if self.contents.next_leaves_at <= times[-1]:
+            self._leave(*self.contents.pop_until(times[-1]))
 
     def _take(self, times: list[Instant], values: list[float]) -> None:
         """Take over new readings before those leave that they replace."""

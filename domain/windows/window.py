@@ -105,8 +105,8 @@ class Window:
         return len(self._contents) >= self.settings.min_n
 
     def filled(self, now: Instant) -> float:
-        """Return how much of the window has passed, from 0 to 1."""
-        self._span.catch_up(now)
+        """Return how much of the window has passed, from 0 to 1; to look changes nothing."""
+        self._span.take_over()
         return self._contents.filled(now)
 
     def _known_change_at(self, now: Instant) -> Instant | None:

@@ -99,3 +99,10 @@ def test_a_long_silence_empties_it() -> None:
     filled.add(after(61.0), 2.0)
 
     assert filled.value(after(61.0)) == 2.0
+
+
+def test_to_look_how_full_it_is_lets_no_time_pass() -> None:
+    filled = fill(window(Statistic.COUNT, window_s=5.0), [(1.0, 0.0), (2.0, 0.0)])
+
+    assert filled.filled(after(9.0)) == 1.0
+    assert filled.value(after(5.5)) == 2.0
