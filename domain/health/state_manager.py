@@ -159,7 +159,8 @@ class StateManager:
                 signal, value = self._signals[reading.signal], reading.value
                 was_calm = signal.monitor.is_calm
                 signal.monitor.receive(reading, readings.source, now)
-                self._note(signal, gathered, was_calm=was_calm)
+                # A reading that leaves it calm makes it stale later.
+                self._note(signal, gathered, was_calm=was_calm, is_put_off=True)
                 if signal.feed is not None:
                     spec = signal.monitor.settings.spec
                     number = value if type(value) is float else number_of(spec, value)
@@ -167,7 +168,8 @@ class StateManager:
             for each in fed.values():
                 was_calm = each.monitor.is_calm
                 each.monitor.judge(now)
-                self._note(each.signal, gathered, was_calm=was_calm)
+                is_put_off = each.monitor.is_put_off
+                self._note(each.signal, gathered, was_calm=was_calm, is_put_off=is_put_off)
         return self._build(gathered)
 
     def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> HealthChanges:
@@ -372,17 +374,25 @@ class StateManager:
         if is_owed_longer:
             self._owing.note(signal.name)
 
-    def _note(self, signal: _Signal, gathered: Gathered, *, was_calm: bool) -> None:
-        """Note what became of a signal; if it was and is calm, no more than its value changed."""
+    def _note(
+        self, signal: _Signal, gathered: Gathered, *, was_calm: bool, is_put_off: bool
+    ) -> None:
+        """Note what became of a signal.
+
+        Args:
+            signal: The signal.
+            gathered: Takes what changed.
+            was_calm: It was calm before; if it still is, no more than its value changed.
+            is_put_off: If it still is calm, its deadline is not earlier than before.
+        """
         monitor, position = signal.monitor, signal.position
         if not (was_calm and monitor.is_calm) or self._registry.is_touched(position):
             self._registry.touch(position)
             return
-        if isinstance(monitor, WindowMonitor):
-            self._registry.replan(position, monitor.wake_at())
-        else:
-            # A reading makes it stale later.
+        if is_put_off:
             self._registry.postpone(position)
+        else:
+            self._registry.replan(position, monitor.wake_at())
         if monitor.version != self._versions[position]:
             self._versions[position] = monitor.version
             gathered.signals.add(signal.name)

@@ -82,7 +82,9 @@ class WindowMonitor(SignalMonitor):
         """When the next reading has to be taken account of; None: all are."""
         self.harmless = GoodRange()
         """The readings that take its value across no bound at once."""
-        self._is_put_off = False
+        self.is_put_off = False
+        """When it was judged last, its deadline became no earlier."""
+        self._readings_put_off = False
         """Whether no good reading lets time take the value across a bound earlier."""
         self._crosses_at: Instant | None = None
         """When time alone may take the value across a bound; None: it cannot."""
@@ -198,7 +200,7 @@ class WindowMonitor(SignalMonitor):
     def _note_bounds(self) -> None:
         """Note what follows from the bounds alone."""
         self.harmless = self._good if self._statistic in _AMONG_READINGS else GoodRange()
-        self._is_put_off = self._is_put_off_by_readings()
+        self._readings_put_off = self._is_put_off_by_readings()
 
     def _lose_value(self) -> None:
         self.readings.newest = None
@@ -212,10 +214,12 @@ class WindowMonitor(SignalMonitor):
             is_same: The value was known and good before, and readings left it so. They put off
                 when time alone takes it across a bound, or leave that as it is.
         """
-        crosses_at = self._crosses_at
-        if is_same and self._is_put_off:
+        crosses_at, shown_at = self._crosses_at, self._shown_at
+        self.is_put_off = False
+        if is_same and self._readings_put_off:
             self._shown_at = now + SHOWN_EVERY if self._changes_with_time else None
             if crosses_at is None or crosses_at > now:
+                self.is_put_off = shown_at is not None and shown_at <= now + SHOWN_EVERY
                 if crosses_at is not None and self._statistic in _MOVED_BY_EACH:
                     self._crosses_at = max(crosses_at, now + LATEST)
                 return
