@@ -2,12 +2,14 @@
 
 import heapq
 from collections.abc import Hashable
-from typing import Generic, TypeVar
+from typing import Generic, TypeAlias, TypeVar
 
 from domain.timebase import Instant
 
 KeyT = TypeVar("KeyT", bound=Hashable)
 
+_Entry: TypeAlias = tuple[Instant, int, KeyT]
+"""A deadline, a number that rises with each that is set, and whose it is."""
 
 _SPARE = 64
 """Replaced deadlines that a queue holds at least before it is tidied."""
@@ -17,9 +19,9 @@ class Deadlines(Generic[KeyT]):
     """At most one deadline per key; finding the next one needs no search."""
 
     def __init__(self) -> None:
-        self._at: dict[KeyT, tuple[Instant, int]] = {}
-        self._heap: list[tuple[Instant, int, KeyT]] = []
-        self._queued: dict[KeyT, tuple[Instant, int]] = {}
+        self._at: dict[KeyT, _Entry[KeyT]] = {}
+        self._heap: list[_Entry[KeyT]] = []
+        self._queued: dict[KeyT, _Entry[KeyT]] = {}
         """By key, the entry of the heap that its deadline is found by: the same, or an earlier one.
 
         A deadline that is put off, as by each reading, leaves the heap alone until it comes up.
@@ -33,10 +35,10 @@ class Deadlines(Generic[KeyT]):
     def set(self, key: KeyT, at: Instant) -> None:
         """Set the deadline of `key`; it replaces an earlier one."""
         self._count += 1
-        entry = self._at[key] = (at, self._count)
+        entry = self._at[key] = (at, self._count, key)
         queued = self._queued.get(key)
         if queued is None or queued[0] > at:
-            self._queue(key, entry)
+            self._queue(entry)
 
     def clear(self, key: KeyT) -> None:
         """Remove the deadline of `key`, if any."""
@@ -64,27 +66,32 @@ class Deadlines(Generic[KeyT]):
         del self._at[key], self._queued[key]
         return key
 
-    def _queue(self, key: KeyT, entry: tuple[Instant, int]) -> None:
-        self._queued[key] = entry
-        heapq.heappush(self._heap, (*entry, key))
+    def _queue(self, entry: _Entry[KeyT]) -> None:
+        self._queued[entry[2]] = entry
+        heapq.heappush(self._heap, entry)
         if len(self._heap) > 2 * len(self._at) + _SPARE:
             # What was replaced by an earlier deadline would fill the memory before it comes up.
             self._queued = dict(self._at)
-            self._heap = [(at, count, key) for key, (at, count) in self._at.items()]
+            self._heap = list(self._at.values())
             heapq.heapify(self._heap)
 
     def _drop_forgotten(self) -> None:
         """Take from the top of the heap what is no deadline, or one that was put off."""
-        while self._heap:
-            at, count, key = self._heap[0]
-            entry = self._at.get(key)
-            if entry == (at, count):
+        heap, deadlines, queued = self._heap, self._at, self._queued
+        while heap:
+            top = heap[0]
+            key = top[2]
+            entry = deadlines.get(key)
+            if entry is top:
                 return
-            heapq.heappop(self._heap)
-            if self._queued.get(key) == (at, count):
-                del self._queued[key]
-                if entry is not None:
-                    self._queue(key, entry)
+            if queued.get(key) is not top:
+                heapq.heappop(heap)
+            elif entry is None:
+                heapq.heappop(heap)
+                del queued[key]
+            else:
+                queued[key] = entry
+                heapq.heapreplace(heap, entry)
 
 
 class SharedDeadlines(Generic[KeyT]):

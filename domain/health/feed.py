@@ -4,7 +4,6 @@ from typing import Protocol
 
 from domain.health.good_range import GoodRange, good_in_all
 from domain.timebase import Instant
-from domain.windows.crossings import earliest
 from domain.windows.shared import SharedWindows
 
 
@@ -71,8 +70,18 @@ class Feed:
 
     def note_fed(self) -> None:
         """Note that all monitors were fed: they wait until the first of them is due."""
-        self._waits_until = earliest(*[monitor.owed_at for monitor in self._monitors]) or 0
+        waits_until: Instant | None = None
+        for monitor in self._monitors:
+            at = monitor.owed_at
+            if at is not None and (waits_until is None or at < waits_until):
+                waits_until = at
+        self._waits_until = waits_until or 0
 
     def owed_until(self) -> Instant | None:
         """Return when a monitor has to take account of a reading at the latest; None: none has."""
-        return earliest(*[monitor.owed_until for monitor in self._monitors])
+        until: Instant | None = None
+        for monitor in self._monitors:
+            at = monitor.owed_until
+            if at is not None and (until is None or at < until):
+                until = at
+        return until

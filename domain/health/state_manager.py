@@ -157,14 +157,15 @@ class StateManager:
             fed: dict[int, _Computed] = {}
             for reading in checked:
                 signal, value = self._signals[reading.signal], reading.value
-                was_calm = signal.monitor.is_calm
-                signal.monitor.receive(reading, readings.source, now)
+                monitor, feed = signal.monitor, signal.feed
+                was_calm = monitor.is_calm
+                monitor.receive(reading, readings.source, now)
                 # A reading that leaves it calm makes it stale later.
                 self._note(signal, gathered, was_calm=was_calm, is_put_off=True)
-                if signal.feed is not None:
-                    spec = signal.monitor.settings.spec
+                if feed is not None:
+                    spec = monitor.settings.spec
                     number = value if type(value) is float else number_of(spec, value)
-                    self._feed(signal, signal.feed, number, now, fed)
+                    self._feed(signal, feed, number, now, fed)
             for each in fed.values():
                 was_calm = each.monitor.is_calm
                 each.monitor.judge(now)
@@ -361,14 +362,15 @@ class StateManager:
             return
         is_chained = is_owed_longer = False
         for each in signal.fed:
-            if each.monitor.feed(value, now):
-                fed[each.signal.position] = each
+            computed, monitor = each
+            if monitor.feed(value, now):
+                fed[computed.position] = each
             else:
                 is_owed_longer = True
-            if each.signal.feed is not None:
+            if computed.feed is not None:
                 is_chained = True
-                if (computed := each.monitor.window.value(now)) is not None:
-                    self._feed(each.signal, each.signal.feed, computed, now, fed)
+                if (value_of_it := monitor.window.value(now)) is not None:
+                    self._feed(computed, computed.feed, value_of_it, now, fed)
         if not is_chained:
             feed.note_fed()
         if is_owed_longer:

@@ -80,6 +80,8 @@ class WindowMonitor(SignalMonitor):
         """The last value that was known."""
         self.owed_at: Instant | None = None
         """When the next reading has to be taken account of; None: all are."""
+        self.owed_until: Instant | None = None
+        """When a reading has to be taken account of even without another one; None: all are."""
         self.harmless = GoodRange()
         """The readings that take its value across no bound at once."""
         self.is_put_off = False
@@ -100,15 +102,11 @@ class WindowMonitor(SignalMonitor):
         self._was_fed = True
         lowest, highest = self.harmless
         if self._cause is None and not lowest <= value <= highest:
-            self.owed_at = now
+            self.owed_at, self.owed_until = now, self._computed_at + LATEST
         elif self.owed_at is None:
             self.owed_at = max(now, self._computed_at + COMPUTED_EVERY)
+            self.owed_until = self._computed_at + LATEST
         return self.owed_at <= now
-
-    @property
-    def owed_until(self) -> Instant | None:
-        """Return when a reading has to be taken account of even without another one."""
-        return None if self.owed_at is None else self._computed_at + LATEST
 
     def judge(self, now: Instant) -> None:
         """Compute the value as of `now`, and what follows from it."""
@@ -131,7 +129,8 @@ class WindowMonitor(SignalMonitor):
         self._plan(now, is_same=is_same)
         if self._was_fed:
             self._computed_at = now
-        self.owed_at, self._was_fed = None, False
+        self.owed_at = self.owed_until = None
+        self._was_fed = False
         self._feed.note_judged()
 
     def set_limit(self, limit: ModeLimit | None, now: Instant) -> None:

@@ -21,11 +21,22 @@ WINDOW = seconds(5)
 _STATISTICS = (Statistic.MEAN, Statistic.MAX, Statistic.RATE, Statistic.GAP, Statistic.STD)
 
 
-def many_signals(count: int, monitors: int = 0) -> tuple[SignalSettings, ...]:
-    """Return the usual signals and further ones, each with an error, and monitors of them."""
+def many_signals(
+    count: int, monitors: int = 0, *, mixed: bool = False
+) -> tuple[SignalSettings, ...]:
+    """Return the usual signals and further ones, each with an error, and monitors of them.
+
+    Args:
+        count: Of the signals.
+        monitors: How many there are of the first 200 of the further signals, in turn.
+        mixed: All monitors of a signal have different statistics, instead of the same.
+    """
     usual = (replace(item, stale_after=0) for item in default_signals())
     further = (_signal(f"signal_{number}") for number in range(count - len(default_signals())))
-    computed = (_monitor(number, f"signal_{number % 200}") for number in range(monitors))
+    computed = (
+        _monitor(number, f"signal_{number % 200}", number + mixed * (number // 200))
+        for number in range(monitors)
+    )
     return (*usual, *further, *computed)
 
 
@@ -44,8 +55,8 @@ def _signal(name: str, **settings: MonitorSettings | int) -> SignalSettings:
     return replace(made, **settings)  # type: ignore[arg-type]  # as the caller says
 
 
-def _monitor(number: int, of: str) -> SignalSettings:
-    statistic = _STATISTICS[number % len(_STATISTICS)]
+def _monitor(number: int, of: str, turn: int) -> SignalSettings:
+    statistic = _STATISTICS[turn % len(_STATISTICS)]
     monitor = MonitorSettings(of, WindowSettings(statistic=statistic, length=WINDOW))
     made = _signal(f"monitor_{number}", monitor=monitor, stale_after=0)
     if statistic is Statistic.RATE:
