@@ -9,10 +9,11 @@ import os
 import shutil
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from threading import RLock
 from typing import Literal, TypeAlias
 from unittest.mock import patch
 
@@ -41,9 +42,15 @@ class FaultyDisk:
     """The folder as whoever starts next finds it, after the process died."""
     _synced: dict[int, bytes] = field(default_factory=dict)
     """What is on the disk itself, by inode."""
+    one_at_a_time: AbstractContextManager[object] = field(default_factory=RLock)
+    """Power is lost before an operation or after it, also while two threads use the disk."""
 
     def does(self, write: Callable[[], object], short: Callable[[], object] | None = None) -> None:
         """Do one operation, or what the fault makes of it."""
+        with self.one_at_a_time:
+            self._do(write, short)
+
+    def _do(self, write: Callable[[], object], short: Callable[[], object] | None) -> None:
         self.count += 1
         if self.left is not None:
             raise apsw.IOError("the process is dead")
@@ -111,8 +118,9 @@ class _File(apsw.VFSFile):
 
     def xSync(self, flags: int) -> None:  # noqa: N802
         below = super().xSync
-        self._disk.does(lambda: below(flags))
-        self._disk.synced(self._path)
+        with self._disk.one_at_a_time:
+            self._disk.does(lambda: below(flags))
+            self._disk.synced(self._path)
 
 
 class _Files(apsw.VFS):
@@ -133,11 +141,12 @@ class _Files(apsw.VFS):
 def _write_all(disk: FaultyDisk, fd: int, content: bytes, offset: int) -> None:
     """Write to a file that is not SQLite's, and sync it."""
     half = content[: len(content) // 2]
-    try:
-        disk.does(lambda: os.pwrite(fd, content, offset), lambda: os.pwrite(fd, half, offset))
-    except apsw.Error as error:
-        raise OSError(errno.EIO, str(error)) from error
-    disk.synced(Path(os.readlink(f"/proc/self/fd/{fd}")))
+    with disk.one_at_a_time:
+        try:
+            disk.does(lambda: os.pwrite(fd, content, offset), lambda: os.pwrite(fd, half, offset))
+        except apsw.Error as error:
+            raise OSError(errno.EIO, str(error)) from error
+        disk.synced(Path(os.readlink(f"/proc/self/fd/{fd}")))
 
 
 @contextmanager
