@@ -32,6 +32,9 @@ _ALIVE: Duration = seconds(0.5)
 """At the latest after this time a frame tells that all is as before."""
 _STILL: Duration = seconds(1.0)
 """Once all nodes were heard, and nothing new for this long, all that was latched was heard too."""
+_UNTIL_TARGETS: Duration = seconds(3.0)
+"""Nobody announces targets if none was heard for this long: on a busy machine the ends of a topic
+find each other later than 1 s after the nodes have answered."""
 _PATIENCE: Duration = seconds(5.0)
 """After this time, a node that was not heard is absent."""
 _NOTES_KEPT = 20
@@ -202,6 +205,8 @@ class GraphFeed:
             return False
         parts = self._observer.parts
         is_still = now - self._changed_at >= _STILL
+        waited = now - self._began_at
         all_heard = is_still and all(parts.view(node).reachable for node in parts.model.nodes)
-        self._is_settled = all_heard or now - self._began_at >= _PATIENCE
+        heard_targets = parts.has_targets or waited >= _UNTIL_TARGETS
+        self._is_settled = (all_heard and heard_targets) or waited >= _PATIENCE
         return self._is_settled

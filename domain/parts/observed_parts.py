@@ -40,6 +40,11 @@ class ObservedParts:
         self._announced: dict[PartName, dict[bool, AnnouncedTarget]] = {}
         """The last target of each part with a mode, and the last one without."""
 
+    @property
+    def has_targets(self) -> bool:
+        """Tell whether somebody announced the target of a part."""
+        return bool(self._announced)
+
     def take_report(self, report: NodeReport, now: Instant) -> None:
         """Process a report of a node.
 

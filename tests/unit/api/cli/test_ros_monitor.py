@@ -53,9 +53,13 @@ class Robot:
             FakeNode(self.graph, ARM, {"max_torque": 0.2}).state = S.ACTIVE
         return base
 
-    async def begin(self, *, once: bool = False) -> None:
+    async def begin(self, *, once: bool = False, announced: bool = True) -> None:
         self.running = asyncio.create_task(self.feed.run_once() if once else self.feed.run())
         await settle()
+        if announced:
+            self.announce()
+
+    def announce(self) -> None:
         for part, mode in ((ACTUATION, PERFORMANCE), (BASE, FAST), (ARM, STRONG)):
             message = mode_event(self.clock.now(), None, mode)
             self.graph.publish(f"/{part}/mode_request_info", message)
@@ -139,6 +143,30 @@ async def test_the_picture_is_whole_once_all_nodes_were_heard_and_nothing_more_c
     assert not robot.feed.watch.robot.is_whole
 
     await robot.clock.advance(2.0)
+    assert robot.feed.watch.robot.is_whole
+
+
+async def test_the_picture_waits_for_targets_that_are_heard_late(robot: Robot) -> None:
+    robot.start_nodes()
+    await robot.begin(announced=False)
+    await robot.clock.advance(2.0)
+    assert not robot.feed.watch.robot.is_whole
+
+    robot.announce()
+    await robot.clock.advance(1.1)
+    assert robot.feed.watch.robot.is_whole
+    assert robot.part("drive_base")["target"] == {"state": "active", "mode": "FAST"}
+
+
+async def test_the_picture_is_whole_after_a_while_though_nobody_announces_targets(
+    robot: Robot,
+) -> None:
+    robot.start_nodes()
+    await robot.begin(announced=False)
+    await robot.clock.advance(2.9)
+    assert not robot.feed.watch.robot.is_whole
+
+    await robot.clock.advance(0.2)
     assert robot.feed.watch.robot.is_whole
 
 
