@@ -32,6 +32,11 @@ class Deadlines(Generic[KeyT]):
         """Tell whether a key has a deadline."""
         return key in self._at
 
+    def at(self, key: KeyT) -> Instant | None:
+        """Return the deadline of `key`; None: it has none."""
+        entry = self._at.get(key)
+        return None if entry is None else entry[0]
+
     def set(self, key: KeyT, at: Instant) -> None:
         """Set the deadline of `key`; it replaces an earlier one."""
         self._count += 1

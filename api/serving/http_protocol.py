@@ -23,6 +23,7 @@ from api.serving.pieces import (
     cost_of_checking,
 )
 from api.serving.turns import Urgency
+from domain.health.signals import ESTOP_SIGNAL
 
 MAX_HEAD_BYTES = 65_536
 MAX_HEADERS = 100
@@ -39,8 +40,9 @@ _CHUNKED_COST = 300
 """Of such a piece, which may hold a hundred chunks, in nominal microseconds."""
 _CHUNK_OVERHEAD = 8
 """Bytes that a byte of a body may take on the wire, if each is a chunk of its own."""
-_STOPS = (b"PUT /emergency_stop", b"POST /signals")
-_PAUSES = (b"PUT /holds/", b"DELETE /tasks/current")
+_STOPS = (b"PUT /emergency_stop", f"POST /signals/{ESTOP_SIGNAL}".encode())
+_PAUSES = (b"PUT /holds/", b"DELETE /tasks/current", b"POST /signals")
+"""Also what brings readings, of which one may be a stop and most are none."""
 _QUESTIONS = (b"GET ", b"HEAD ")
 _END_OF_HEAD = b"\r\n\r\n"
 _UPGRADE = b"\r\nupgrade:"
@@ -246,7 +248,7 @@ def _cost_of_head(head: bytearray) -> int:
 
 
 def urgency_of(head: bytes | bytearray) -> Urgency:
-    """Return how urgent a request is; it may be a reading that stops the robot."""
+    """Return how urgent a request is that begins with this head."""
     if head.startswith(_STOPS):
         return Urgency.STOP
     return Urgency.PAUSE if head.startswith(_PAUSES) else Urgency.REST

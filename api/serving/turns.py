@@ -20,7 +20,7 @@ class Urgency(IntEnum):
     STOP = 0
     """Asks for an emergency stop."""
     PAUSE = 1
-    """Asks for something else that makes the robot safer. So do 50 clients that set holds."""
+    """Asks for something else that may make the robot safer, as 50 clients do that set holds."""
     REST = 2
 
 

@@ -20,27 +20,25 @@ class Owing:
             feeds: By signal.
         """
         self._feeds = feeds
-        self._noted: dict[str, Instant] = {}
-        """By signal, its deadline or an earlier one."""
         self._deadlines: Deadlines[str] = Deadlines()
+        """By signal, when its monitors owe something, or earlier."""
 
     def note(self, signal: str) -> None:
         """Note that monitors of a signal may owe taking account of its readings from now on."""
-        at, noted = self._feeds[signal].owed_until(), self._noted.get(signal)
+        at, noted = self._feeds[signal].owed_until(), self._deadlines.at(signal)
         if at is not None and (noted is None or at < noted):
-            self._set(signal, at)
+            self._deadlines.set(signal, at)
 
     def next(self) -> Instant | None:
         """Return when a reading has to be taken account of; None: all are."""
         while (signal := self._deadlines.first()) is not None:
             at = self._feeds[signal].owed_until()
-            if at == self._noted[signal]:
-                return at
             if at is None:
                 self._deadlines.clear(signal)
-                del self._noted[signal]
+            elif at == self._deadlines.at(signal):
+                return at
             else:
-                self._set(signal, at)
+                self._deadlines.set(signal, at)
         return None
 
     def due(self, now: Instant) -> str | None:
@@ -50,7 +48,3 @@ class Owing:
         """
         at = self.next()
         return None if at is None or at > now else self._deadlines.first()
-
-    def _set(self, signal: str, at: Instant) -> None:
-        self._noted[signal] = at
-        self._deadlines.set(signal, at)

@@ -36,6 +36,9 @@ REQUEST_FLOODS = MappingProxyType(
         "holds of 50 clients": Flood(
             50, again=_request("PUT", "/holds/flood") + _request("DELETE", "/holds/flood")
         ),
+        "readings of 50 clients": Flood(
+            50, again=2 * _request("POST", "/signals", b'{"battery_level": 0.9}')
+        ),
         "200 clients that resume": Flood(200, websocket_handshake("/ws?after=0"), lasts_s=0.5),
         "200 clients that resume, each elsewhere": Flood(
             200, websocket_handshake("/ws?after=NUMBER"), lasts_s=0.5

@@ -101,8 +101,9 @@ async def test_a_connection_is_dispensable_between_its_requests() -> None:
     ("request_line", "urgency"),
     [
         ("PUT /emergency_stop", Urgency.STOP),
-        ("POST /signals", Urgency.STOP),
         ("POST /signals/estop", Urgency.STOP),
+        ("POST /signals", Urgency.PAUSE),
+        ("POST /signals/battery_level", Urgency.PAUSE),
         ("PUT /holds/operator", Urgency.PAUSE),
         ("DELETE /tasks/current", Urgency.PAUSE),
         ("GET /emergency_stop", Urgency.REST),

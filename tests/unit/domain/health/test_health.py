@@ -10,7 +10,15 @@ from domain.events.event import RecordedEvent
 from domain.events.health import ErrorAcknowledged
 from domain.events.service import TimeWasDue
 from domain.health.health import Health
-from domain.health.signals import Recovery, SignalSettings, default_signals
+from domain.health.signals import (
+    Bound,
+    Comparison,
+    Recovery,
+    SignalKind,
+    SignalSettings,
+    SignalSpec,
+    default_signals,
+)
 from domain.inputs import (
     Reading,
     Readings,
@@ -337,6 +345,25 @@ def test_an_error_is_kept_from_when_it_waits_until_it_is_acknowledged(waiting: R
 
     waiting.acknowledge("TEMPERATURE_HIGH")
     assert kept_by(waiting) == [("TEMPERATURE_HIGH", None)]
+
+
+def test_errors_of_one_step_are_kept_in_the_order_of_their_signals() -> None:
+    """Not in that of a set of names, which differs from process to process."""
+    names = [f"motor_{letter}" for letter in "hgfedcba"]
+    further = tuple(
+        SignalSettings(
+            SignalSpec(name, SignalKind.NUMBER),
+            (Bound(f"{name.upper()}_HOT", Comparison.ABOVE, 80.0),),
+            recovery=Recovery.ACKNOWLEDGE,
+        )
+        for name in names
+    )
+    robot = Robot((*default_signals(), *further))
+
+    robot.read(**dict.fromkeys(names, 90.0))
+
+    kept = [name for name, _ in kept_by(robot)]
+    assert kept == [f"{name.upper()}_HOT" for name in sorted(names)]
 
 
 def test_an_error_that_clears_by_itself_is_not_kept(waiting: Robot) -> None:
