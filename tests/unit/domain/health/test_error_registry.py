@@ -174,7 +174,7 @@ def test_a_deadline_that_is_put_off_is_looked_up_when_it_comes_up() -> None:
 
 def test_a_deadline_that_comes_earlier_is_not_put_off() -> None:
     door = Door(opens_at=5)
-    registry = ErrorRegistry([door])
+    registry = ErrorRegistry([door, Door(opens_at=4)])
     registry.replan(0, None)
     door.opens_at = 3
     registry.replan(0, 3)

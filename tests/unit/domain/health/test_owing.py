@@ -49,6 +49,17 @@ def test_the_earliest_of_all_monitors_counts() -> None:
     assert story.owing.due(20) == "load"
 
 
+def test_a_monitor_that_owes_earlier_than_what_was_noted_comes_first() -> None:
+    story = Story()
+    story.mean.owed_until, story.heat.owed_until = 30, 25
+    story.owing.note("load")
+    story.owing.note("heat")
+    story.rate.owed_until = 20
+    story.owing.note("load")
+
+    assert story.owing.next() == 20
+
+
 def test_what_is_put_off_or_settled_is_not_due_any_more() -> None:
     story = Story()
     story.mean.owed_until, story.heat.owed_until = 30, 25
