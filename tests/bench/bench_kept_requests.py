@@ -100,6 +100,7 @@ async def _ready(asker: Asker) -> None:
             await asyncio.sleep(0.02)
         else:
             return
+    raise AssertionError("it does not become ready")
 
 
 async def _ask_alone(asker: Asker, asked: Asked, folder: Path) -> None:

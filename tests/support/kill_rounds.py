@@ -188,9 +188,12 @@ class Round:
 async def _client(url: str) -> AsyncIterator[httpx.AsyncClient]:
     async with httpx.AsyncClient(base_url=url, timeout=10.0) as http:
         for _ in range(_READY_TRIES):
-            if not (await http.get("/readyz")).is_error:
+            answer = await http.get("/readyz")
+            if not answer.is_error:
                 break
             await asyncio.sleep(0.02)
+        else:
+            raise AssertionError(f"it does not become ready: {answer.text}")
         yield http
 
 
