@@ -8,6 +8,7 @@ import numpy as np
 
 from domain.actor import Actor
 from domain.errors import PilothouseError
+from domain.health.chatter import WITHIN
 from domain.inputs import (
     AcknowledgeRequest,
     BackendStatus,
@@ -29,7 +30,7 @@ from domain.paths.path import Path
 from domain.simulation.node_settings import Fault
 from domain.state_and_mode import ModeName
 from domain.tasks.holds import RESTART_HOLD
-from domain.timebase import seconds
+from domain.timebase import seconds, to_seconds
 from domain.tracking.trackers import TRACKERS
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
@@ -40,6 +41,10 @@ OWNERS = ("cell", "gate", "operator")
 _POINTS = 20
 _CALM_S = 70.0
 """After so long without a request every change has ended."""
+_READ_EVERY_S = 30.0
+_STOPS_WITHIN_S = 5.0
+_TURNS = 10
+"""How often each node is lost and found again, before a day ends."""
 
 
 def let_happen(robot: CoreRobot, rng: Random, for_s: float, pause_s: float) -> None:
@@ -56,33 +61,60 @@ def let_happen(robot: CoreRobot, rng: Random, for_s: float, pause_s: float) -> N
 
 def calm_down(robot: CoreRobot) -> None:
     """Mend all that is broken, take back all that was asked, and wait until nothing goes on."""
-    for node in sorted(robot.model.nodes):
-        # A service that was started again has not heard of nodes that stayed as they were.
-        robot.fault(node, Fault.DIE)
-        robot.fault(node, None)
     robot.lose_pose(lost=False)
     for status in (BackendStatus(True), DriveStatus(True), StorageStatus(True)):
         robot.give(status)
     robot.give(ReportBacklog("ros", None))
-    robot.advance(1.0)
-    # Always the same, so that what is known of the last one is as large.
-    _drive(robot, Random(1))
     robot.cancel_task()
     robot.release_stop()
     for owner in (*OWNERS, RESTART_HOLD):
         robot.release(owner)
-    for _ in range(2):
-        robot.read(**GOOD)
-        robot.advance(_CALM_S / 2)
-    robot.read(**GOOD)
+    _wait(robot, _CALM_S)
+    _bring_up(robot)
+    # Of errors that came and went ten minutes are remembered, and each turn forgets two older ones.
+    _wait(robot, to_seconds(WITHIN))
+    for _ in range(_TURNS):
+        _lose_and_find(robot)
+    _bring_up(robot)
+    # Always the same, so that what is known of the last one is as large.
+    _drive(robot, Random(1))
+    robot.advance(1.0)
+    robot.cancel_task()
+    robot.advance(_STOPS_WITHIN_S)
+    assert not robot.core.open_errors()
+    assert not robot.core.driving.holds
+
+
+def _bring_up(robot: CoreRobot) -> None:
+    """Bring all parts to a mode, whatever has become of them, and leave no error open."""
+    _lose_and_find(robot)
     # A change that failed stands until one that drives the part succeeds.
     robot.ask_mode("robot", "RACE")
-    robot.advance(_CALM_S / 2)
+    _wait(robot, _CALM_S)
     # Of errors that nobody has seen, those of other days would be listed.
     for view in tuple(robot.core.open_errors().values()):
         robot.give(AcknowledgeRequest(view.key.error, ADA, view.key.part))
     robot.advance(1.0)
-    assert not robot.core.open_errors()
+
+
+def _lose_and_find(robot: CoreRobot) -> None:
+    """Let the process of each node die and start again, one after the other.
+
+    A service that was started again has not heard of nodes that stayed as they were.
+    """
+    for node in sorted(robot.model.nodes):
+        robot.fault(node, Fault.DIE)
+        robot.advance(1.0)
+        robot.fault(node, None)
+        robot.advance(1.0)
+
+
+def _wait(robot: CoreRobot, for_s: float) -> None:
+    """Let time pass in which the signals are good."""
+    end = robot.now + seconds(for_s)
+    while robot.now < end:
+        robot.read(**GOOD)
+        robot.advance(_READ_EVERY_S)
 
 
 def _read(robot: CoreRobot, rng: Random) -> None:
