@@ -1,15 +1,21 @@
 """The running mock signals: their controls, and how external readings change them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 
 from domain.actor import NOBODY, Actor
-from domain.health.signals import ESTOP_SIGNAL, asks_for_stop
+from domain.health.signals import ESTOP_SIGNAL, SignalSpec, default_signals
 from domain.inputs import Reading, Readings, SignalValue
 from domain.outbox import Outputs
 from domain.simulation.mock_signals import MOCK_SOURCE, MockSignal, MockSignals
 from service.clock import Clock
 from service.pacing import Pacer
 from service.readings import UNNAMED, Submit
+
+_SPECS: Mapping[str, SignalSpec] = MappingProxyType(
+    {settings.spec.name: settings.spec for settings in default_signals()}
+)
+"""Of the standard signals; a robot file does not change which values they have."""
 
 
 class MockHandle:
@@ -114,6 +120,6 @@ class MockedReadings:
         outputs = self._submit(Readings(tuple(items), own, actor))
         for item in items:
             if mock.holds(item.signal) and (stands_in or item.signal != ESTOP_SIGNAL):
-                presses = item.signal == ESTOP_SIGNAL and asks_for_stop(item.value)
-                mock.hold(item.signal, presses or item.value)
+                # As the signal holds it: a posted 2 is LOW_SIGNAL, and 1 of `estop` is true.
+                mock.hold(item.signal, _SPECS[item.signal].checked(item.value))
         return outputs

@@ -19,6 +19,19 @@ async def test_another_value_is_held_and_decided_at_once(robot: HttpRobot) -> No
     assert (await robot.get("/system_state"))["errors"] == ["BATTERY_LOW"]
 
 
+@pytest.mark.parametrize(
+    ("signal", "value", "held"), [("signal_strength", 2, "LOW_SIGNAL"), ("estop", 1, True)]
+)
+async def test_a_value_is_held_as_its_signal_shows_it(
+    signal: str, value: object, held: object, robot: HttpRobot
+) -> None:
+    answer = await robot.http.patch(f"/mock/{signal}", json={"value": value})
+    await robot.pass_time(1)
+
+    assert answer.json()["value"] == held
+    assert (await robot.get(f"/signals/{signal}"))["value"] == held
+
+
 async def test_a_signal_that_is_not_published_any_more_becomes_stale(robot: HttpRobot) -> None:
     answer = await robot.http.patch("/mock/temperature", json={"publishing": False})
     await robot.pass_time(3)
