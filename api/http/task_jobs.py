@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from api.http.body_parsing import InvalidBodyError, MalformedBodyError, parse_body
 from api.http.schemas.path_preview import MAX_DRAWN, PathPreviewJson
 from api.http.schemas.tasks import TaskBody, WaypointJson, WaypointsJson
-from domain.errors import InvalidValueError
+from domain.errors import InvalidValueError, UnknownControllerError
 from domain.paths.approach import ApproachLimits
 from domain.paths.headings import Heading
 from domain.paths.path import Path
 from domain.paths.preview import preview
-from domain.tasks.task_planner import check_cruise, check_start
+from domain.tasks.task_planner import check_controller, check_cruise, check_start
 from domain.vehicle import Pose
 from service.files.csv_reading import CsvReading
 from service.files.text_file import decode_csv
@@ -101,8 +101,11 @@ def preview_posted(
     """
     task = read_posted_task(raw, None) if csv is None else _read_csv(raw, csv, is_driven=False)
     try:
-        check_cruise(task.speed_mps, limits.vehicle)
+        check_controller(task.controller)
         check_start(task.path, task.start_index)
+        check_cruise(task.speed_mps, limits.vehicle)
+    except UnknownControllerError as error:
+        raise InvalidBodyError.at("controller", error) from error
     except InvalidValueError as error:
         raise InvalidBodyError.at(error.pointer, error) from error
     found = preview(task.path, task.speed_mps, pose, limits, task.start_index)

@@ -49,6 +49,16 @@ MIN_CRUISE_MPS = 0.1
 RESTART_REASON = "the service was restarted: the task goes on when the hold restart is released"
 
 
+def check_controller(name: str) -> None:
+    """Reject a controller that is not there.
+
+    Raises:
+        UnknownControllerError: There is no path tracker of that name.
+    """
+    if name not in TRACKERS:
+        raise UnknownControllerError("controller", name, tuple(TRACKERS))
+
+
 def check_cruise(speed_mps: float, limits: VehicleLimits) -> None:
     """Reject a cruise speed that the vehicle cannot drive.
 
@@ -368,8 +378,7 @@ class TaskPlanner:
             InvalidValueError: The start index is out of range or leaves no path, or the vehicle
                 cannot drive the cruise speed.
         """
-        if controller not in TRACKERS:
-            raise UnknownControllerError("controller", controller, tuple(TRACKERS))
+        check_controller(controller)
         check_start(path, start_index)
         check_cruise(speed_mps, self._limits)
 

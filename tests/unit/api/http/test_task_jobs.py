@@ -58,6 +58,15 @@ def test_a_preview_of_an_impossible_speed_is_refused() -> None:
         preview_posted(LINE, fast, None, approach_limits())
 
 
+def test_a_preview_of_an_unknown_controller_is_refused() -> None:
+    unknown = TaskOptions("carrot", 2.8, 0)
+    with pytest.raises(InvalidBodyError, match="no controller 'carrot'") as caught:
+        preview_posted(LINE, unknown, None, approach_limits())
+
+    assert caught.value.code == "UNKNOWN_CONTROLLER"
+    assert [fault.pointer for fault in caught.value.faults] == ["/controller"]
+
+
 def test_a_preview_tells_how_the_file_was_read() -> None:
     text = b"# s_m; x_m; y_m; yaw_deg\n0;0;0;90\n1;0;1;90\n2;0;2;90\n"
     shown = json.loads(preview_posted(text, OPTIONS, None, approach_limits()))["csv"]
