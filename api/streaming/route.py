@@ -14,6 +14,7 @@ from typing import Any
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from api.http.access import READS_ONLY, ReadsOnlyError, UnauthorizedError
+from api.http.body_parsing import InvalidBodyError
 from api.http.route_policy import Permission, policy
 from api.http.schemas.health import MAX_SOURCE
 from api.http.schemas.stream import AuthMessage, ResyncMessage
@@ -23,7 +24,7 @@ from api.streaming.stream_client import StreamClient
 from api.streaming.stream_server import StreamServer, StreamServerDep
 from api.streaming.websocket_frames import connection_of, text_frame
 from domain.actor import Actor
-from domain.errors import PilothouseError
+from domain.errors import InvalidValueError, PilothouseError
 from domain.health.signals import ESTOP_SIGNAL
 from domain.inputs import Reading
 
@@ -191,7 +192,10 @@ class _Client:
         if self._reads_only:
             raise ReadsOnlyError
         reading = given.reading(given.signal, supervisor.clock)
-        supervisor.readings.submit([reading], given.source, self._actor)
+        try:
+            supervisor.readings.submit([reading], given.source, self._actor)
+        except InvalidValueError as error:
+            raise InvalidBodyError.at("value", error) from error
 
     async def _answer(self, error: PilothouseError) -> None:
         """Send a problem, once the client has read most of what was written before."""

@@ -394,6 +394,16 @@ async def test_a_stop_in_a_binary_message_is_taken(app: FastAPI, supervisor: Sup
     assert supervisor.core.signal("estop").source == "panel"
 
 
+async def test_a_rejected_value_is_pointed_at_where_it_is_in_the_message(app: FastAPI) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send({"type": "reading", "signal": "battery_level", "value": 7})
+        problem = await client.frame("problem")
+
+    assert (problem["status"], problem["code"]) == (422, "INVALID_VALUE")
+    assert [fault["pointer"] for fault in problem["errors"]] == ["/value"]
+
+
 async def test_a_rejected_reading_is_counted(app: FastAPI, supervisor: Supervisor) -> None:
     async with WebSocketClient(app, topics="events") as client:
         await client.frame("hello")
