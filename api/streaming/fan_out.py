@@ -27,7 +27,7 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 PING_EVERY = seconds(2.2)
-"""Clients that miss a ping are dropped when the next one is due, 4.4 s after their last sign."""
+"""Clients that miss a ping are slow when the next one is due, 4.4 s after their last sign."""
 _CLIENTS_AT_ONCE = 100
 """Clients written to before other tasks of the event loop run: about 1 ms."""
 _BYTES_AT_ONCE = 131_072
@@ -168,14 +168,13 @@ class FanOut:
         self._owing_since = self._clock.now()
 
     def _ping(self) -> bytes:
-        """Return a ping if one is due, after dropping the clients that missed the last one."""
+        """Return a ping if one is due."""
         now = self._clock.now()
         if now < self._ping_at:
             return b""
         self._ping_at = now + PING_EVERY
         for group in self._groups.values():
-            for client in group.take_silent():
-                self.drop(client.transport, client.address)
+            group.ask_all()
             if not self._aged:
                 self._aged += group.due_for_complete(now)
         return PING
@@ -218,7 +217,9 @@ class FanOut:
                 self.skipped += skipped
                 written += len(content)
                 if content or ping:
-                    client.transport.write(content + ping)
+                    client.transport.write(content + (PING if client.is_slow else ping))
+                    # Its answer tells that it has read this, whoever buffers it.
+                    client.owes_answer |= client.is_slow
                 if client.cursor.took_complete:
                     client.note_complete(len(content))
                 self._go_on_if_more(client.cursor)

@@ -10,6 +10,11 @@ from service.clock import Clock
 PATIENCE = seconds(4.5)
 """A client with waiting data that shows no sign of reading for this long is dropped."""
 
+HIDDEN_PATIENCE = seconds(30)
+"""The same of a client that answered before, while only its own buffers can hold data: those of its
+kernel and its library take 200 kB and more, and a slow reader answers a ping only once it has read
+all of that. Nothing is written to it meanwhile."""
+
 COMPLETE_EVERY = seconds(30)
 """Time between two complete frames for a client that skips none."""
 _COMPLETE_BYTES_PER_S = 1_000
@@ -66,22 +71,19 @@ class Group:
         if has_all and has_taken and self.apart.pop(client.transport, None) is not None:
             self.in_step[client.transport] = client
 
-    def take_silent(self) -> tuple["StreamClient", ...]:
-        """Remove and return the clients that missed a ping; the others must answer the next one.
+    def ask_all(self) -> None:
+        """Let all clients owe an answer to the ping that is sent next.
 
-        Clients with waiting data may not have received the ping yet; see `StreamClient.is_stuck`.
-        The same holds if the kernel has data for them: these are slow from now on.
+        Who still owes the last one is slow from now on. Clients with waiting data may not have
+        received that ping yet; see `StreamClient.is_stuck`.
         """
-        free = [c for c in self.clients if not c.transport.get_write_buffer_size()]
-        late = [client for client in free if client.owes_answer]
-        silent = tuple(client for client in late if not client.still_reads())
-        for client in silent:
-            self.remove(client)
-        for client in late:
-            self.part_from(client)
-        for client in free:
+        for client in self.clients:
+            if client.is_slow or client.transport.get_write_buffer_size():
+                continue
+            if client.owes_answer:
+                client.begin_to_be_slow()
+                self.part_from(client)
             client.owes_answer = True
-        return silent
 
     def due_for_complete(self, now: Instant) -> list["StreamClient"]:
         """Return the clients whose last complete frame is too long ago."""
@@ -106,10 +108,13 @@ class StreamClient:
         self.owes_answer = False
         """Whether it has not answered the last ping."""
         self.is_slow = False
-        """Whether it reads less than is published: it then gets a frame when it has read most."""
+
         self.complete_at = clock.now() + COMPLETE_EVERY
         """When it gets a complete frame, unless it gets one before."""
         self._unacknowledged = 0
+        self._has_answered = False
+        self._hides = False
+        """Whether it owes an answer, and all was taken by its computer."""
         self._group = group
         self._clock = clock
         self._waiting = 0
@@ -128,6 +133,7 @@ class StreamClient:
     def answered(self) -> None:
         """Note that the client answered a ping, and so reads."""
         self.owes_answer = False
+        self._has_answered = True
         self._read_at = self._clock.now()
 
     def lost(self) -> None:
@@ -144,18 +150,11 @@ class StreamClient:
         self._waiting = waiting
         return waiting == 0 and not self.transport.is_closing()
 
-    def still_reads(self) -> bool:
-        """Tell whether a client that owes an answer may only be slow.
-
-        If the kernel has data for it, the ping may be behind that: the client has `PATIENCE` from
-        now on to read some of it.
-        """
-        if self.is_slow:
-            return True
+    def begin_to_be_slow(self) -> None:
+        """Note that it does not keep up, or is dead: it has some time to read what there is."""
         self._unacknowledged = unacknowledged_bytes(self.transport)
-        self.is_slow = self._unacknowledged > 0
+        self.is_slow = True
         self._read_at = self._clock.now()
-        return self.is_slow
 
     def note_complete(self, size: int) -> None:
         """Note that a complete frame was written; the next one is due after some time.
@@ -172,8 +171,10 @@ class StreamClient:
         if left < self._unacknowledged:
             self._read_at = now
         self._unacknowledged = left
-        return waiting == 0 and left <= _IN_FLIGHT_BYTES
+        self._hides = self.owes_answer and left == 0
+        return waiting == 0 and left <= _IN_FLIGHT_BYTES and not self._hides
 
     def is_stuck(self, now: Instant) -> bool:
-        """Tell whether it has neither read waiting data nor answered a ping for `PATIENCE`."""
-        return now - self._read_at > PATIENCE and not self.transport.is_closing()
+        """Tell whether it has neither read waiting data nor answered a ping for too long."""
+        patience = HIDDEN_PATIENCE if self._hides and self._has_answered else PATIENCE
+        return now - self._read_at > patience and not self.transport.is_closing()

@@ -11,6 +11,7 @@ from api.streaming import stream_client
 from api.streaming.client_input import TOPICS, StreamQuery
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
+from api.streaming.websocket_frames import PING
 from domain.actor import Actor
 from domain.inputs import EmergencyStopRequest
 from service.supervisor import Supervisor
@@ -180,13 +181,16 @@ async def test_a_client_that_does_not_read_is_dropped_though_its_system_takes_al
     ):
         await clock.advance(10)
         mute.answers = False
-        await clock.advance(2)
+        await clock.advance(5)
+        written = len(mute.written)
+        await clock.advance(25)
         assert not mute.closing
-        await clock.advance(3)
+        assert len(mute.written) == written, "nothing grows old in its buffers"
+        await clock.advance(10)
 
     assert (mute.closing, other.closing) == (True, False)
     assert fan_out.dropped == 1
-    assert len(other.frames) == 301
+    assert len(other.frames) == 1001
 
 
 async def test_a_client_that_stopped_to_read_long_before_it_clogs_is_not_given_more_time(
@@ -338,6 +342,30 @@ async def test_a_slow_reader_skips_frames_is_told_and_stays(
     assert states[-1]["seq"] == sum(frame["skipped"] + 1 for frame in states) + states[0]["seq"] - 1
     # What it reads next is never old.
     assert left < 10_000
+
+
+async def test_a_slow_reader_whose_own_computer_takes_all_skips_frames_is_told_and_stays(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    """Its program reads 8 writes a second, and answers a ping when it comes to it."""
+    wire = Wire()
+    wire.answers = False
+    read = late = 0
+    with fan_out.serve(wire.connection, STATE, "slow") as client:
+        for _ in range(90 * 8):
+            await clock.advance(0.125)
+            if read == len(wire.written):
+                continue
+            if wire.written[read].endswith(PING):
+                client.answered()
+            read += 1
+            late = len(wire.written) - read
+
+    assert (fan_out.dropped, wire.closing) == (0, False)
+    states = [frame for frame in wire.frames if frame["type"] == "state"]
+    assert sum(frame["skipped"] for frame in states) == fan_out.skipped > 300
+    assert states[-1]["seq"] == sum(frame["skipped"] + 1 for frame in states) + states[0]["seq"] - 1
+    assert late <= 1
 
 
 async def test_whoever_reads_nothing_at_all_is_told_and_cut_though_its_kernel_holds_data(

@@ -120,24 +120,38 @@ def test_a_client_that_is_lost_is_forgotten_and_comes_back_by_nothing(
     assert group.is_empty
 
 
-def test_who_owes_an_answer_when_the_next_is_asked_for_is_silent(
+def test_who_owes_an_answer_when_the_next_is_asked_for_is_slow(
     group: Group, client: StreamClient
 ) -> None:
-    assert group.take_silent() == ()
+    group.ask_all()
     client.answered()
-    assert group.take_silent() == ()
+    group.ask_all()
+    assert not client.is_slow
 
-    assert group.take_silent() == (client,)
-    assert group.is_empty
+    group.ask_all()
+    assert client.is_slow
+    assert list(group.apart.values()) == [client]
 
 
 def test_to_whom_something_waits_the_ping_may_not_have_come(
     group: Group, client: StreamClient
 ) -> None:
-    group.take_silent()
+    group.ask_all()
     wire_of(client).waiting = 10
 
-    assert group.take_silent() == ()
+    group.ask_all()
+    assert not client.is_slow
+
+
+def test_a_slow_client_is_written_to_when_it_has_answered(
+    group: Group, client: StreamClient, clock: ManualClock
+) -> None:
+    group.ask_all()
+    group.ask_all()
+    assert not client.is_ready(clock.now())
+
+    client.answered()
+    assert client.is_ready(clock.now())
 
 
 def test_a_client_is_ready_when_nothing_waits_and_it_is_there(
