@@ -218,8 +218,8 @@ class FanOut:
                 written += len(content)
                 if content or ping:
                     client.transport.write(content + (PING if client.is_slow else ping))
-                    # Its answer tells that it has read this, whoever buffers it.
-                    client.owes_answer |= client.is_slow
+                    if client.is_slow:
+                        client.note_asked(skipped)
                 if client.cursor.took_complete:
                     client.note_complete(len(content))
                 self._go_on_if_more(client.cursor)

@@ -20,6 +20,9 @@ COMPLETE_EVERY = seconds(30)
 _COMPLETE_BYTES_PER_S = 1_000
 """Of large robots complete frames come less often, so that an idle stream stays small."""
 
+_KEEPS_UP_FOR = seconds(10)
+"""A slow client that skipped nothing for so long keeps up: it may be us who were slow."""
+
 _IN_FLIGHT_BYTES = 4_096
 """What a slow client may have to read yet when the next frame is written to it. More would only
 grow old in the kernel, which takes 100 kB and more before it says that a client does not read."""
@@ -63,7 +66,7 @@ class Group:
 
     def take_in_if_level(self, client: "StreamClient") -> None:
         """Let a client that has received and read everything rejoin the others."""
-        if client.is_slow:
+        if client.is_slow and not client.has_caught_up():
             return
         has_all = client.cursor.position == self.cursor.position
         has_taken = not client.transport.get_write_buffer_size()
@@ -108,7 +111,7 @@ class StreamClient:
         self.owes_answer = False
         """Whether it has not answered the last ping."""
         self.is_slow = False
-
+        """Whether it reads less than is published: it then gets a frame when it has read most."""
         self.complete_at = clock.now() + COMPLETE_EVERY
         """When it gets a complete frame, unless it gets one before."""
         self._unacknowledged = 0
@@ -120,6 +123,8 @@ class StreamClient:
         self._waiting = 0
         self._read_at = clock.now()
         """Time of its last sign of reading."""
+        self._skipped_at = clock.now()
+        """When it was last too late for a frame, while it was slow."""
 
     def clogged(self) -> None:
         """Continue alone, until the data that was written last has been read."""
@@ -154,7 +159,22 @@ class StreamClient:
         """Note that it does not keep up, or is dead: it has some time to read what there is."""
         self._unacknowledged = unacknowledged_bytes(self.transport)
         self.is_slow = True
-        self._read_at = self._clock.now()
+        self._read_at = self._skipped_at = self._clock.now()
+
+    def note_asked(self, skipped: int) -> None:
+        """Note that a ping of its own was written to a slow client: its answer tells that it reads.
+
+        Args:
+            skipped: How many frames it had skipped before.
+        """
+        self.owes_answer = True
+        if skipped:
+            self._skipped_at = self._clock.now()
+
+    def has_caught_up(self) -> bool:
+        """Tell whether a slow client reads as much as is published by now; it is not slow then."""
+        self.is_slow = self._clock.now() - self._skipped_at < _KEEPS_UP_FOR
+        return not self.is_slow
 
     def note_complete(self, size: int) -> None:
         """Note that a complete frame was written; the next one is due after some time.

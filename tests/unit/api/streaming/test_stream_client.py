@@ -154,6 +154,25 @@ def test_a_slow_client_is_written_to_when_it_has_answered(
     assert client.is_ready(clock.now())
 
 
+def test_a_slow_client_that_skips_nothing_for_a_while_is_written_to_with_the_others_again(
+    group: Group, client: StreamClient, clock: ManualClock
+) -> None:
+    """As after a pause of the whole service, in which nobody could answer in time."""
+    group.ask_all()
+    group.ask_all()
+    client.note_asked(skipped=3)
+    client.answered()
+
+    group.take_in_if_level(client)
+    assert client.is_slow
+
+    clock.stall(10)
+    client.note_asked(skipped=0)
+    group.take_in_if_level(client)
+    assert not client.is_slow
+    assert list(group.in_step.values()) == [client]
+
+
 def test_a_client_is_ready_when_nothing_waits_and_it_is_there(
     client: StreamClient, clock: ManualClock
 ) -> None:
