@@ -2,12 +2,18 @@
 
 from collections.abc import Iterator
 
+from api.http.routes.service_health import GRAPH_CODES
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import codes_given_to, codes_in, require_described
 from domain.changes.admission import ADVISORY
 from domain.changes.guards import INVARIANT
 from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
-from domain.errors import BackendUnavailableError, OfflineError, OwnedBySupervisorError
+from domain.errors import (
+    BackendUnavailableError,
+    OfflineError,
+    OwnedBySupervisorError,
+    StorageDegradedError,
+)
 from domain.health.built_in_errors import ALL_OF_NODES, OF_DEVICES
 from domain.health.part_errors import DEVIATES_AFTER
 from domain.health.signals import (
@@ -103,7 +109,11 @@ _WARNINGS = {
     "NO_CONTROLLER": "The external controller is absent, silent, or keeps a goal: tasks are held.",
     "NO_DRIVE": "Drive commands do not reach the vehicle, so tasks are held.",
     "NO_POSE": "No current pose of the vehicle, so tasks are held.",
+    "ROS_DUPLICATE_NODE": "Two nodes in the ROS graph have one name.",
+    "ROS_QOS": "The ends of a topic in the ROS graph offer and ask for what does not go together.",
+    "ROS_TYPE": "The ends of a topic in the ROS graph have different types.",
     "SOURCE_FAILS": "The source of a signal gives no reading, or one that the signal cannot have.",
+    StorageDegradedError.code: "What happens cannot be written down: a restart may forget it.",
 }
 
 _INTRODUCTION = """\
@@ -130,7 +140,8 @@ task is held or the robot is in ERROR. A reason that says that it does not is th
 when the vehicle stands, or when a task drives it again."""
 
 _PARTS = """\
-Parts have these errors without a word in the model file; systems have the last three.
+Parts have these errors without a word in the model file; systems have only `DEVIATES`,
+`CHANGE_FAILED` and `INVARIANT_BROKEN`.
 `GET /errors` lists them beside those of signals, and so does the topic `errors` of the stream.
 A model file can [declare further ones](../how-to/say-what-an-error-does.md), and give these another
 severity. An error puts the robot into ERROR if its severity is `critical` or `fatal`: it sets bit
@@ -141,6 +152,10 @@ _DEVICES = """\
 Each [device](../how-to/spread-a-robot-over-computers.md) of a robot of several computers has these
 errors, with its name in place of that of a part. A device that was not yet connected since the
 start is LOST; no event tells that error."""
+
+_HEALTH = """\
+Warnings of the model and of the robot file are among them, with the codes of their
+[findings](findings.md)."""
 
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
@@ -163,7 +178,8 @@ def blockers_page() -> str:
     require_described("conditions", of_conditions, set(_OF_CONDITIONS))
     require_described("errors of parts", set(ALL_OF_NODES), set(_OF_PARTS))
     require_described("errors of devices", set(OF_DEVICES), set(_OF_DEVICES))
-    require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
+    warned = {*codes_given_to("WarningJson"), *GRAPH_CODES.values(), StorageDegradedError.code}
+    require_described("warnings", warned, set(_WARNINGS))
     changes = (
         (code(name), "no" if name in ADVISORY else "yes", about)
         for name, about in _OF_CHANGES.items()
@@ -204,6 +220,7 @@ def blockers_page() -> str:
         _VEHICLE,
         table(("code", "when"), ((code(name), about) for name, about in _OF_THE_VEHICLE.items())),
         "## Warnings of `/healthz`",
+        _HEALTH,
         table(("code", "cause"), warnings),
     )
 

@@ -19,11 +19,12 @@ from domain.tasks.holds import DRIVE_HOLD, NAVIGATION_HOLD, VEHICLE_HOLD
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
 
-_GRAPH_CODES = {
+GRAPH_CODES = {
     GraphFaultKind.QOS: "ROS_QOS",
     GraphFaultKind.TYPE: "ROS_TYPE",
     GraphFaultKind.DUPLICATE: "ROS_DUPLICATE_NODE",
 }
+"""Of warnings, by what is wrong in the ROS graph."""
 
 router = APIRouter(tags=["service"])
 
@@ -150,7 +151,7 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
             yield WarningJson(code="SOURCE_FAILS", message=message)
     yield from _vehicle_warnings(supervisor.core.driving.holds)
     for fault in supervisor.core.graph_faults():
-        yield WarningJson(code=_GRAPH_CODES[fault.kind], message=f"{fault.name}: {fault.reason}")
+        yield WarningJson(code=GRAPH_CODES[fault.kind], message=f"{fault.name}: {fault.reason}")
     if late := supervisor.publisher.late_ticks:
         message = f"{late} ticks skipped since the start: the machine is too slow"
         yield WarningJson(code="LATE_TICKS", message=message)
