@@ -88,6 +88,22 @@ def test_bad_gps_is_seen_coming_in_a_ring_that_fills_and_stands_above_what_is_go
     assert complaints.messages == []
 
 
+def test_what_is_wrong_with_a_signal_is_not_cut_off_where_there_is_room(
+    browser: Browser, service: Service, complaints: Complaints
+) -> None:
+    page = opened(browser, service, complaints)
+    service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+    service.request("PATCH", "/mock/temperature", {"value": 60})
+    service.request("PUT", "/emergency_stop", {"engaged": True, "reason": "smoke"})
+    expect(row(page, "E-stop signal")).to_contain_text("signal: not pressed")
+    expect(row(page, "GPS accuracy")).to_contain_text("GPS_LOST in")
+    expect(row(page, "Temperature")).to_contain_text("TEMPERATURE_HIGH")
+    cut = """(words) => words.filter((word) => word.scrollWidth > word.clientWidth)
+        .map((word) => word.textContent)"""
+    assert page.locator("ph-signal-row :is(.signal-word, .age)").evaluate_all(cut) == []
+    page.close()
+
+
 def test_an_error_comes_first_and_shades_its_time_and_goes_back_when_it_is_over(
     desktop: Page, service: Service, complaints: Complaints
 ) -> None:
