@@ -104,7 +104,7 @@ def standstill_words(robot: Robot) -> str:
     moves = _moving_at(robot)
     if robot.system_state is not None and alarm_of(robot.system_state):
         at = "may be moving" if moves is None else f"still moves at {words.speed(moves)}"
-        return f"the vehicle {at}: use the hardware stop"
+        return f"use the hardware stop: the vehicle {at}"
     if moves is not None:
         return f"the vehicle moves at {words.speed(moves)}"
     is_known = robot.vehicle is not None and robot.vehicle["speed_mps"] is not None

@@ -65,8 +65,8 @@ export function standstillWords(state) {
   const moves = movingAt(state);
   if (ALARMS[state.systemState?.reasons[0]?.code])
     return moves === null
-      ? "the vehicle may be moving: use the hardware stop"
-      : `the vehicle still moves at ${speed(moves)}: use the hardware stop`;
+      ? "use the hardware stop: the vehicle may be moving"
+      : `use the hardware stop: the vehicle still moves at ${speed(moves)}`;
   if (moves !== null) return `the vehicle moves at ${speed(moves)}`;
   const isKnown = typeof state.vehicle?.speed_mps === "number" && !state.holds.vehicle;
   if (!isKnown) return "it is not known whether the vehicle stands";

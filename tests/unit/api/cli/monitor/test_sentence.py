@@ -5,6 +5,7 @@ from api.cli.monitor.sentence import (
     absence_sentence,
     contact_sentence,
     restart_sentence,
+    standstill_words,
     state_sentence,
     stop_sentence,
     storage_sentence,
@@ -27,7 +28,7 @@ from tests.support.monitor import (
     system_state,
     view,
 )
-from tests.support.sentence_cases import CASES, STORAGE, Case, combinations, moving
+from tests.support.sentence_cases import CASES, STORAGE, Case, combinations, moving, reason
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
@@ -179,6 +180,17 @@ def test_an_engaged_stop_says_why_since_when_by_whom_and_whether_the_vehicle_sta
     assert told(None) == "it is not known whether the vehicle stands"
     # It stood once, and somebody pushes it.
     assert told(0.3, standstill_at=AT) == "the vehicle moves at 0.30 m/s"
+
+
+def test_under_a_stop_that_does_not_stop_what_to_do_comes_first() -> None:
+    def told(code: str, speed: float | None) -> str:
+        state = reason(code, "after the stop")
+        return standstill_words(robot(frame(system_state=state, vehicle=moving(speed))))
+
+    still = "use the hardware stop: the vehicle still moves at 1.1 m/s"
+    assert told("STILL_MOVING", 1.1) == still
+    unknown = "use the hardware stop: the vehicle may be moving"
+    assert told("STANDSTILL_UNKNOWN", None) == unknown
 
 
 def test_a_stop_on_another_computer_says_where_it_is() -> None:
