@@ -52,6 +52,20 @@ def test_earlier_events_are_loaded_over_restarts_up_to_the_first(
     assert complaints.messages == []
 
 
+def test_events_of_another_day_have_their_day_above_them(desktop: Page) -> None:
+    tell_earlier_runs(desktop)
+    open_log(desktop)
+    expect(events(desktop)).to_contain_text(f"thing {LAST} happened")
+    for _ in range(3):
+        count = events(desktop).locator("li").count()
+        earlier(desktop).click()
+        expect(events(desktop).locator("li")).not_to_have_count(count)
+    days = events(desktop).locator("li.day")
+    expect(days).to_have_text(["2026-03-03", "2026-03-02", "2026-03-01"])
+    below = days.last.evaluate("(day) => day.nextElementSibling.textContent")
+    assert "thing 299 happened" in below
+
+
 def test_a_line_tells_of_each_restart_and_of_what_may_be_missing(desktop: Page) -> None:
     tell_earlier_runs(desktop)
     open_log(desktop)

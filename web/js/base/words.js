@@ -60,7 +60,7 @@ export function changeWords(change, now) {
 }
 
 /** Local date, "2026-03-01". */
-function isoDate(at) {
+export function isoDate(at) {
   return new Date(at).toLocaleDateString("sv-SE");
 }
 

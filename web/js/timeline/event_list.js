@@ -8,7 +8,7 @@ import { request } from "/web/js/base/api.js";
 import { el } from "/web/js/base/dom.js";
 import { whileSending } from "/web/js/base/sending.js";
 import { emptyState, firstEventId } from "/web/js/base/store.js";
-import { timeAndDay, timeOfDay } from "/web/js/base/words.js";
+import { isoDate, timeAndDay, timeOfDay } from "/web/js/base/words.js";
 import { causesOf } from "/web/js/timeline/causes.js";
 
 const SHOWN = 50;
@@ -97,7 +97,7 @@ class EventList extends HTMLElement {
     this.#isDue = false;
     const wanted = this.#wanted();
     const lines = new Map();
-    for (const line of wanted.slice(-this.#shown))
+    for (const line of withDays(wanted.slice(-this.#shown)))
       lines.set(line, this.#lines.get(line) ?? makeLine(line));
     this.#lines = lines;
     this.list.toggleAttribute("data-details", this.details.checked);
@@ -142,7 +142,22 @@ function withRestarts(events) {
 
 function restartLine({ at }, isCutOff) {
   const lost = isCutOff ? "; the last events before may be missing" : "";
-  return { note: `Restarted at ${timeAndDay(at)}${lost}`, isRestart: true };
+  return { note: `Restarted at ${timeAndDay(at)}${lost}`, isRestart: true, at };
+}
+
+/** Return lines with one above those of each day but today. */
+function withDays(lines) {
+  const dayOf = ({ at }) => (at ? isoDate(at) : null);
+  const today = isoDate(Date.now());
+  const all = [];
+  let day = today;
+  for (const line of lines) {
+    const next = dayOf(line) ?? day;
+    if (next !== day && day !== today) all.push({ note: day, isDay: true });
+    all.push(line);
+    day = next;
+  }
+  return day === today ? all : [...all, { note: day, isDay: true }];
 }
 
 /** Notable events are always shown, and so are lines for missing events. */
@@ -151,7 +166,7 @@ function isNotable(event) {
 }
 
 function makeLine(event) {
-  if (event.note) return el("li", { class: event.isRestart ? "restart" : "gap" }, event.note);
+  if (event.note) return el("li", { class: event.isDay ? "day" : event.isRestart ? "restart" : "gap" }, event.note);
   const line = el("li", { "data-kind": event.kind });
   const time = el("time", { datetime: event.at, title: event.at }, timeOfDay(event.at));
   const show = () => line.dispatchEvent(new CustomEvent("ph-show-moment", { bubbles: true, detail: { at: Date.parse(event.at) } }));
