@@ -76,6 +76,15 @@ def test_the_worst_is_open_and_says_what_it_means_and_what_can_be_done(
     expect(worst.get_by_role("button", name="Show on the timeline")).to_be_visible()
 
 
+def test_an_error_came_first_only_if_there_are_others(desktop: Page, service: Service) -> None:
+    load(service, 300)
+    expect(alarm(desktop, "OVERLOAD").locator(".alarm-body")).to_be_visible()
+    expect(section(desktop)).not_to_contain_text(re.compile("first|before the others"))
+    service.request("PATCH", "/mock/battery_level", {"value": 0.1})
+    expect(alarm(desktop, "OVERLOAD").locator(".tags")).to_have_text("first")
+    expect(alarm(desktop, "OVERLOAD")).to_contain_text("it came before the others")
+
+
 def test_an_error_leads_to_the_moment_when_it_began(desktop: Page, service: Service) -> None:
     load(service, 300)
     desktop.evaluate(
@@ -307,4 +316,16 @@ def test_what_follows_from_an_error_is_folded_below_it_and_is_acknowledged_there
     root.get_by_role("button", name="Show left_drive").click()
     expect(page.locator("ph-part-panel h2")).to_have_text("left_drive")
     expect(page.get_by_role("list", name="Errors of this part")).to_contain_text("overcurrent")
+    page.close()
+
+
+def test_the_tab_counts_what_why_counts_and_not_what_follows_from_it(
+    browser: Browser, rover: Service
+) -> None:
+    page = browser.new_page(viewport={"width": 360, "height": 640})
+    page.goto(rover.url)
+    rover.request("POST", "/nodes/left_drive/errors/FAULT", {"active": True, "message": "hot"})
+    expect(section(page)).to_contain_text("1 follows from this", timeout=10_000)
+    roots = page.locator("ul.alarms").first.locator("> li").count()
+    expect(page.get_by_role("tab", name=f"Status, {roots} to attend to")).to_be_visible()
     page.close()

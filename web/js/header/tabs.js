@@ -1,6 +1,6 @@
 /** <ph-tabs>: on a phone, the tabs at the foot, with how much in each asks for attention. */
 
-import { isOn, isSilenced } from "/web/js/base/error_groups.js";
+import { errorGroups } from "/web/js/base/error_groups.js";
 import { el, icon, setAttribute, setText } from "/web/js/base/dom.js";
 import { partCounts } from "/web/js/base/part_problems.js";
 
@@ -80,8 +80,9 @@ function tab(title) {
   return { name, title, count, button: el("button", props, icon(name), el("span", {}, title), count) };
 }
 
+/** As many as Why counts: what follows from an error is attended to with it. */
 function errorCount(errors) {
-  return Object.values(errors).filter((error) => isOn(error) && !isSilenced(error)).length;
+  return errorGroups(errors).on.length;
 }
 
 function partCount({ parts, devices }) {

@@ -68,13 +68,14 @@ class Alarm extends HTMLElement {
     const { state, enabled, knownAt, volatile } = view;
     setText(this.age, ageWords(error, knownAt));
     setAttribute(this.age, "title", error.since_at ? `since ${timeAndDay(error.since_at)}` : null);
-    if (error !== this.#shown?.error) this.#signal = signalOf(error, state.signals);
+    if (error !== this.#shown?.key[0]) this.#signal = signalOf(error, state.signals);
     const signal = this.#signal;
     if (signal && isOn(error)) this.spark.show(signal, view);
-    const key = [error, enabled, volatile, ...below];
+    const told = placed(error, state.errors);
+    const key = [error, told.first_out, enabled, volatile, ...below];
     if (this.#shown && isSame(key, this.#shown.key)) return;
-    this.#shown = { error, below, view, key, signal: state.signals[signal] };
-    this.#showHead(error, below, state);
+    this.#shown = { error: told, below, view, key, signal: state.signals[signal] };
+    this.#showHead(told, below, state);
     setAttribute(this.spark, "hidden", !signal || !isOn(error));
     this.#fillBody();
   }
@@ -210,6 +211,12 @@ class Alarm extends HTMLElement {
   #tell(name, detail) {
     this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
   }
+}
+
+/** An error that is on alone came before no other. */
+function placed(error, errors) {
+  const isAlone = () => !Object.values(errors).some((other) => other !== error && isOn(other));
+  return error.first_out && isAlone() ? { ...error, first_out: false } : error;
 }
 
 /** "of front_left_whe…vation": the end of a long name tells it from others. */
