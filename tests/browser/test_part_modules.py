@@ -51,6 +51,8 @@ def run(page: Page, script: str, given: object = None) -> Any:  # noqa: ANN401 -
         # These say once more what the target and the actual state say.
         (off_target("lidar"), [ERROR | {"error": "DEVIATES", "severity": "warning"}], "deviating"),
         (part("lidar"), [ERROR | {"error": "DEVIATES", "severity": "warning"}], "normal"),
+        # A change that was rolled back.
+        (part("lidar"), [ERROR | {"error": "CHANGE_FAILED", "severity": "warning"}], "warned"),
         # A system is reachable as its nodes are.
         (system("base", "lidar", reachable=False), [], "normal"),
     ],

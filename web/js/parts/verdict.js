@@ -33,7 +33,9 @@ const OF_THE_TARGET = new Set(["DEVIATES", "CHANGE_FAILED"]);
 /** Return the look of a part, a key of RANKS. */
 export function lookOf(part, errors = NONE) {
   if (part.reachable === false && part.kind === "node") return "unreachable";
-  const told = errors.filter(({ error }) => !OF_THE_TARGET.has(error));
+  // Of a change that was rolled back, target and actual state say nothing.
+  const isTold = ({ error }) => !OF_THE_TARGET.has(error) || (error === "CHANGE_FAILED" && part.converged);
+  const told = errors.filter(isTold);
   if (told.some(({ severity }) => severity !== "warning")) return "faulty";
   if (!part.converged && !part.change) return "deviating";
   if (told.length > 0) return "warned";
