@@ -140,6 +140,12 @@ def test_systems_that_deviate_because_of_a_node_name_it_and_come_after_it(page: 
     expect(page.get_by_role("tree")).to_be_hidden()
 
 
+def test_why_counts_no_parts_beside_the_errors_that_name_them(page: Page) -> None:
+    expect(page.locator("header .more")).to_contain_text("+3")
+    expect(page.locator("ph-why")).to_contain_text("UNREACHABLE")
+    expect(page.locator("ph-why")).not_to_contain_text("more such")
+
+
 def test_attention_is_narrowed_to_what_deviates_or_is_faulty(page: Page) -> None:
     page.get_by_role("radio", name="Attention").check(force=True)
     page.get_by_role("radio", name="Faulty").check(force=True)

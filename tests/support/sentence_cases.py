@@ -217,6 +217,14 @@ CASES = (
         members=members(parts=tuple(told.part(f"n{n}", reachable=False) for n in range(10))),
     ),
     Case(
+        "one node more off its target than are named",
+        "IDLE",
+        "attention",
+        "n0 is unreachable; no task",
+        ("n1 is unreachable", "n2 is unreachable", "1 more such part"),
+        members=members(parts=tuple(told.part(f"n{n}", reachable=False) for n in range(4))),
+    ),
+    Case(
         "a node in errorprocessing",
         "IDLE",
         "attention",

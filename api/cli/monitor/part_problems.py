@@ -30,7 +30,8 @@ def part_problems(
             found[part["name"]] = None if is_told else problem
     every = [problem for problem in dict.fromkeys(found.values()) if problem is not None]
     left = len(every) - _NAMED
-    first = every if left <= 0 else [*every[:_NAMED], f"{left} more such parts"]
+    such = "part" if left == 1 else "parts"
+    first = every if left <= 0 else [*every[:_NAMED], f"{left} more such {such}"]
     return [*device_problems(devices), *first]
 
 

@@ -44,7 +44,7 @@ function findProblems(parts, devices) {
   }
   const texts = [...new Set(problems.values())].filter(Boolean);
   const left = texts.length - NAMED;
-  return { counts, texts: left > 0 ? [...texts.slice(0, NAMED), `${left} more such parts`] : texts };
+  return { counts, texts: left > 0 ? [...texts.slice(0, NAMED), `${left} more such ${left === 1 ? "part" : "parts"}`] : texts };
 }
 
 function problemOf(part) {

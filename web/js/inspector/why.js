@@ -69,7 +69,13 @@ function otherReasons({ live, state, contact }) {
   const said = stateSentence(state, state === live ? contact : { level: "live" });
   if (said.level === "calm") return [];
   const told = Object.values(state.errors).filter(isOn).map(toldBy);
-  return [said.text, ...said.more].filter((line) => !told.some((words) => line.startsWith(words)));
+  const isTold = (line) => told.some((words) => line.startsWith(words)) || (told.length > 0 && isRest(line));
+  return [said.text, ...said.more].filter((line) => !isTold(line));
+}
+
+/** Whether a line counts parts or devices beside those that the header names; the errors name all. */
+function isRest(line) {
+  return /^\d+ more such (parts?|devices)$/.test(line);
 }
 
 /** How the line begins that an error makes superfluous. */

@@ -29,6 +29,8 @@ def test_only_the_first_three_are_named_and_the_others_counted() -> None:
 
     assert part_problems(parts)[-1] == "6 more such parts"
     assert len(part_problems(parts)) == 4
+    four = dict(list(parts.items())[:4])
+    assert part_problems(four)[-1] == "1 more such part"
 
 
 def test_a_device_that_is_away_stands_for_its_parts_and_what_is_above_them() -> None:
