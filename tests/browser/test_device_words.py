@@ -56,17 +56,17 @@ def test_a_device_that_is_away_stands_for_its_parts_in_the_sentence(page: Page) 
 @pytest.mark.parametrize(
     ("offline", "words"),
     [
-        ({"target": {}, "reactions": False}, "Cut off, it stays as it is."),
+        ({"target": {}, "reactions": False}, "When cut off, it stays as it is."),
         (
             {"target": {"drive_base": "inactive"}, "reactions": False},
-            "Cut off for 2 s, drive_base goes to inactive.",
+            "When cut off for 2 s, drive_base goes to inactive.",
         ),
         (
             {
                 "target": {"lidar": "active.__DEFAULT__", "drive_base": "inactive"},
                 "reactions": True,
             },
-            "Cut off for 2 s, drive_base goes to inactive, lidar goes to active.default,"
+            "When cut off for 2 s, drive_base goes to inactive, lidar goes to active.default,"
             " its reactions act.",
         ),
     ],

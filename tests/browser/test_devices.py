@@ -65,7 +65,7 @@ def test_each_part_says_on_which_device_it_is_and_what_that_does_when_it_is_cut_
     row(desktop, "drive_base").click()
 
     expect(desktop.locator("ph-part-device")).to_have_text(
-        "On device base. Cut off for 2 s, drive_base goes to inactive, its reactions act."
+        "On device base. When cut off for 2 s, drive_base goes to inactive, its reactions act."
     )
     expect(desktop.locator(".chip[data-kind=device]")).to_have_count(0)
     assert complaints.messages == []

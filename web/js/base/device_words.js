@@ -81,13 +81,13 @@ export function ownWords({ device, lead }) {
   return `${device}: ${LEADS[lead]}`;
 }
 
-/** What a device would do by itself: "Cut off for 2 s, drive_base goes to inactive." */
+/** What a device would do by itself: "When cut off for 2 s, drive_base goes to inactive." */
 export function offlineWords({ after_s: after, target, reactions }, part) {
   const own = target[part] ? [[part, target[part]]] : [];
   const all = [...own, ...Object.entries(target).filter(([name]) => name !== part)];
   const goes = all.slice(0, NAMED).map(([name, label]) => `${name} goes to ${label.replace("__DEFAULT__", "default")}`);
   if (all.length > NAMED) goes.push(`${all.length - NAMED} more parts change`);
   if (reactions) goes.push("its reactions act");
-  if (goes.length === 0) return "Cut off, it stays as it is.";
-  return `Cut off for ${after} s, ${goes.join(", ")}.`;
+  if (goes.length === 0) return "When cut off, it stays as it is.";
+  return `When cut off for ${after} s, ${goes.join(", ")}.`;
 }
