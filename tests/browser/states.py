@@ -275,6 +275,7 @@ def rejected(page: Page, _: Service) -> None:
 
 
 def sending(page: Page, _: Service) -> None:
+    show_part(page, "actuation")
     page.route("**/mode", lambda _: None)
     page.get_by_role("radio", name="PERFORMANCE").click()
 
