@@ -97,6 +97,7 @@ def test_on_a_phone_it_is_seen_wherever_one_scrolls(phone: Page, service: Servic
     for end in ("0", "10000"):
         phone.evaluate(f"document.querySelector('main').scrollTo(0, {end})")
         expect(notice(phone)).to_be_in_viewport(ratio=1)
+        assert notice(phone).evaluate("(band) => band.scrollHeight - band.clientHeight") <= 1
         expect(phone.get_by_role("button", name=re.compile("^STOP"))).to_be_in_viewport(ratio=1)
     assert phone.evaluate("document.documentElement.scrollWidth") == 360
 
