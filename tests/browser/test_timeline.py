@@ -74,6 +74,23 @@ def lane_y(page: Page, name: str) -> float:
     return row["y"] + row["height"] / 2 - canvas["y"]
 
 
+def ground(page: Page) -> list[int]:
+    """Return the colour of what nothing is drawn on: the lower left of the axis."""
+    pixel = "(canvas) => [...canvas.getContext('2d').getImageData(1, 1, 1, 1).data]"
+    colour: list[int] = timeline(page).evaluate(pixel)
+    return colour
+
+
+def test_it_takes_the_colours_of_another_scheme_at_once(page: Page) -> None:
+    # A pixel is a minute and a half there, and until then nothing else changes.
+    page.get_by_role("button", name="24 h", exact=True).click()
+    page.wait_for_timeout(1500)
+    light = ground(page)
+    page.emulate_media(color_scheme="dark")
+    page.wait_for_timeout(1500)
+    assert sum(ground(page)) < sum(light)
+
+
 def look_at_a_minute(page: Page) -> None:
     page.get_by_role("button", name="1 min", exact=True).click()
     page.wait_for_function(

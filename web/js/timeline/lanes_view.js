@@ -42,6 +42,12 @@ export class LanesView {
     return this.#width;
   }
 
+  /** What the colours depend on. */
+  get scheme() {
+    const { theme } = document.documentElement.dataset;
+    return `${theme} ${DARK.matches} ${FORCED.matches}`;
+  }
+
   get scale() {
     return this.#scale;
   }
@@ -109,8 +115,7 @@ export class LanesView {
 
   /** The colours as the scheme resolves them: a canvas does not know what `light-dark()` is. */
   #inkNow() {
-    const { theme } = document.documentElement.dataset;
-    const key = `${theme} ${DARK.matches} ${FORCED.matches}`;
+    const key = this.scheme;
     if (this.#ink && key === this.#inkKey) return this.#ink;
     this.#inkKey = key;
     setAttribute(this.probe, "hidden", false);

@@ -139,7 +139,8 @@ class Timeline extends HTMLElement {
     const scale = scaleOf(this.#range, this.#now(), this.lanes.width);
     const { selected, contact } = this.#view;
     const facts = [scale.from, scale.to, this.#record.version, selected, this.#pinned, this.#cursor];
-    return [...facts, this.#kept, this.lanes.width, contact.level, this.#lane, this.#pending].join();
+    const shown = [this.lanes.width, this.lanes.scheme, contact.level];
+    return [...facts, this.#kept, ...shown, this.#lane, this.#pending].join();
   }
 
   #ask() {
