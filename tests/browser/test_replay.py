@@ -54,7 +54,10 @@ def test_it_is_framed_as_a_recording_and_stop_says_that_no_robot_hears_it(
     stop = page.get_by_role("button", name=re.compile("^STOP"))
 
     expect(stop).to_be_disabled()
-    expect(stop).to_have_accessible_description("This is a recording: no robot hears STOP here")
+    expect(stop).to_have_accessible_description("Recording: no robot hears STOP")
+    said = page.locator("#stop-note")
+    assert said.evaluate("(note) => note.scrollWidth - note.clientWidth") <= 0
+    expect(page.get_by_text("Key: Shift+Esc")).to_be_hidden()
     expect(page).to_have_title("REPLAY · Pilothouse")
     frame = page.evaluate("getComputedStyle(document.body, '::after').borderTopWidth")
     assert frame == "4px"

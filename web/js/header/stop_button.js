@@ -12,7 +12,7 @@ import { drawSteps, stopSteps } from "/web/js/header/stop_steps.js";
 const ANSWER_MS = 2000;
 const RETRY_MS = 500;
 const NOTE = "Software stop, not safety-rated";
-const NO_ROBOT = "This is a recording: no robot hears STOP here";
+const NO_ROBOT = "Recording: no robot hears STOP";
 
 class StopButton extends HTMLElement {
   #sending = false;
@@ -107,7 +107,7 @@ class StopButton extends HTMLElement {
     const steps = phase === "ready" ? [] : this.progress;
     drawSteps(this.steps, steps);
     setAttribute(this.steps, "hidden", phase === "ready");
-    setAttribute(this.key, "hidden", phase !== "ready");
+    setAttribute(this.key, "hidden", phase !== "ready" || this.button.disabled);
     setAttribute(this.note, "hidden", phase !== "ready");
     setAttribute(this.alarm, "hidden", !this.#isUndelivered);
     const refused = this.#problem?.status ? ` (${this.#problem.detail})` : "";
