@@ -229,8 +229,17 @@ def test_a_monitor_tells_of_what_it_is_computed_and_a_limit_where_it_ends(
     page.get_by_role("searchbox", name="Filter signals").fill("150")
     button(page, MOTOR).click()
     expect(row(page, MOTOR)).to_contain_text("when above 80.0 °C, ends at 70.0 °C")
+    # Its label is cut in the middle; nothing else tells on a phone which one it is.
+    expect(row(page, MOTOR).locator(".signal-facts")).to_contain_text("motor_150_temperature")
     assert complaints.messages == []
     page.close()
+
+
+def test_a_history_that_does_not_come_is_told_in_a_sentence_that_fits(desktop: Page) -> None:
+    desktop.route("**/battery_level/history?*", lambda route: route.abort())
+    button(desktop, "Battery").click()
+    told = "No history: the service did not answer."
+    expect(row(desktop, "Battery").get_by_text(told, exact=True)).to_be_visible()
 
 
 def test_without_contact_the_line_of_a_signal_ends_and_nothing_is_ok(

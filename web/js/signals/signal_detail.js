@@ -109,7 +109,9 @@ class SignalDetail extends HTMLElement {
       const history = await request("GET", `/signals/${path}/history?${query}`);
       if (asked === this.#asked && this.isConnected) this.#draw(history, from, to);
     } catch (error) {
-      setText(this.summary, `No history: ${detailWords(error.problem)}.`);
+      // What was asked for changes nothing, whether it was answered or not.
+      const why = error.problem.status ? detailWords(error.problem) : "the service did not answer";
+      setText(this.summary, `No history: ${why.replace(/\.$/, "")}.`);
     }
   }
 

@@ -7,6 +7,7 @@ import { duration, modeName, timeAndDay } from "/web/js/base/words.js";
 export function factsOf(name, signal, monitor, now) {
   const { settings } = signal;
   const facts = [
+    ["Name", name],
     ...boundsOf(settings).map(([prefix, error]) => [error, boundWords(name, signal, prefix)]),
     ["Holds", modeWords(settings.limits_because)],
     ["Computed", settings.of ? monitorWords(settings, monitor) : ""],
