@@ -38,6 +38,8 @@ SignalPath = Annotated[SentSignalName, Path(description="One of those in `GET /s
 _MAX_POINTS = 10_000
 _DEFAULT_POINTS = 1_000
 _DEFAULT_SPAN: Duration = seconds(3_600.0)
+_FAR: Instant = 2**62
+"""Nothing is recorded so long before or after 1970; calendars go on beyond what 64 bits hold."""
 _MOMENT = "RFC 3339 with an offset, such as `2026-05-04T12:00:00Z`. Default: "
 
 
@@ -177,7 +179,11 @@ def _span(
         message = "query from_at: must be before to_at, which is now unless it is given"
         fault = BodyFault(pointer="", code=InvalidValueError.code, message=message)
         raise InvalidBodyError([fault], "INVALID_QUERY")
-    return begin, end
+    return _within(begin), _within(end)
+
+
+def _within(at: Instant) -> Instant:
+    return max(-_FAR, min(_FAR, at))
 
 
 def _taken(supervisor: Supervisor, ignored: Mapping[str, object]) -> TakenReadingsJson:

@@ -85,9 +85,9 @@ def _conditions(connection: apsw.Connection, query: EventQuery) -> tuple[list[st
     if query.before is not None:
         require("events.id < ?", _bound(query.before))
     if query.from_at is not None:
-        require("events.wall_ns >= ?", since_epoch(query.from_at))
+        require("events.wall_ns >= ?", _bound(since_epoch(query.from_at)))
     if query.to_at is not None:
-        require("events.wall_ns <= ?", since_epoch(query.to_at))
+        require("events.wall_ns <= ?", _bound(since_epoch(query.to_at)))
     if query.kind is not None:
         kinds = _kinds(connection, query.kind)
         require(f"events.kind IN ({','.join('?' * len(kinds))})", *kinds)

@@ -317,6 +317,25 @@ async def test_the_history_has_every_reading_and_its_error(unmocked: HttpRobot) 
     assert set(history["items"][0]) == {"at", "min", "max", "mean", "last", "error"}
 
 
+@pytest.mark.parametrize(
+    ("span", "found"),
+    [
+        ("from_at=0001-01-01T00:00:00Z&to_at=9999-12-31T23:59:59Z", 1),
+        ("from_at=0001-01-01T00:00:00Z&to_at=9999-12-31T23:59:59Z&points=2", 1),
+        ("to_at=9999-12-31T23:59:59Z", 0),
+        ("from_at=0001-01-01T00:00:00Z&to_at=0002-01-01T00:00:00Z", 0),
+    ],
+)
+async def test_a_history_may_be_as_long_as_a_calendar(
+    unmocked: HttpRobot, span: str, found: int
+) -> None:
+    await unmocked.http.post("/signals/temperature", json={"value": 20})
+
+    history = await unmocked.get(f"/signals/temperature/history?{span}")
+
+    assert len(history["items"]) == found
+
+
 async def test_a_short_history_has_single_readings(unmocked: HttpRobot) -> None:
     await unmocked.http.post("/signals/temperature", json={"value": 20})
     await unmocked.http.post("/signals/temperature", json={"value": 21})

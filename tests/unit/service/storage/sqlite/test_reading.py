@@ -1,3 +1,4 @@
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -58,6 +59,14 @@ def test_the_newest_file_may_have_more_than_was_reported(tmp_path: Path) -> None
 
     assert ids([reported]) == [1, 2]
     file.finish()
+
+
+def test_all_times_of_a_calendar_may_be_asked_for(files: list[LogSummary]) -> None:
+    first, last = datetime.min.replace(tzinfo=UTC), datetime.max.replace(tzinfo=UTC)
+
+    assert len(read_events(files, EventQuery(from_at=first, to_at=last))) == 6
+    assert read_events(files, EventQuery(from_at=last)) == []
+    assert read_events(files, EventQuery(to_at=first)) == []
 
 
 def test_there_may_be_no_files() -> None:
