@@ -16,6 +16,7 @@ from api.serving.joining import join_graph
 from api.serving.misuse import MisuseError
 from api.simulation.simulation_job import SimulatedParts
 from domain.errors import UnknownDeviceError
+from domain.onboard import Onboard
 from domain.simulation.mock_signals import MockSignals
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
@@ -257,7 +258,7 @@ def _with_simulated(
     backend = SimulatedBackend(simulated, clock)
     place, link = _link_of(options, files, clock)
     whole, status = _with_sources(files, clock, backend, (backend,), link)
-    onboard = make_onboard(files.loaded.model, files.settings, now)
+    onboard = _onboard(files, stores, now)
     stores = replace(stores, memories=memories_of(simulated))
     supervisor = Supervisor(
         files.own_part, onboard, clock, whole, backend.readings, what, stores=stores
@@ -281,7 +282,7 @@ def _with_ros2(
     graph = join_graph()
     _require_types(graph, robot.ros2)
     ros = Ros2Backend(share.local_model, robot, graph, clock)
-    onboard = make_onboard(files.loaded.model, files.settings, now)
+    onboard = _onboard(files, stores, now)
     place, link = _link_of(options, files, clock)
     if mocked and not files.is_device:
         signals = MockSignals(now)
@@ -301,6 +302,12 @@ def _with_ros2(
     gateway = RosGateway(RosInterface(supervisor, interface, worker), graph, clock, mapped)
     limits = ServiceLimits.of(robot.limits)
     return Composition(supervisor, limits, gateway, place=place, interface=interface, worker=worker)
+
+
+def _onboard(files: RobotFiles, stores: Stores, now: Instant) -> Onboard:
+    """Return the core of a robot; it begins when its record does, from which it is made again."""
+    start = now if stores.journal is None else stores.journal.boot.started_at
+    return make_onboard(files.loaded.model, files.settings, start)
 
 
 def _interface(options: ServeOptions, robot: RobotSettings) -> InterfaceSettings:

@@ -1,16 +1,25 @@
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Literal
 
 import pytest
 
-from api.serving.composition import Composition, ServeOptions, compose, read_files
+from api.serving.composition import (
+    Composition,
+    ServeOptions,
+    compose,
+    open_stores,
+    read_files,
+)
 from api.serving.misuse import MisuseError
 from domain.errors import InvalidModelError
 from domain.state_and_mode import PartName
+from domain.timebase import seconds
 from service.files.robot_file import RobotSettings, read_robot_file
 from service.link.supervisor_end import SupervisorEnd
 from service.onboard_parts import make_onboard
+from service.replay import core_of_boot
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
 from service.ros.interface.message_sets import MessageSet
 from service.start_task import StartTaskError
@@ -102,6 +111,33 @@ def test_the_folder_of_waypoint_files_is_beside_the_robot_file(
     folder.path.mkdir()
     composed(ServeOptions(robot=robot))
     assert caplog.records == []
+
+
+@pytest.fixture
+def watching_a_rate(robot: Path) -> Path:
+    robot.write_text(
+        "mock: false\nsignals:\n  scan: {}\n"
+        "  scan_rate: {of: scan, statistic: rate, window_s: 2.0, below: 3.0, error: SCAN_SLOW}\n"
+    )
+    return robot
+
+
+@pytest.mark.parametrize("backend", ["simulated", "ros2"])
+@pytest.mark.usefixtures("_ros")
+async def test_the_core_begins_with_its_record_however_long_it_took_to_open_that(
+    watching_a_rate: Path, backend: Literal["simulated", "ros2"]
+) -> None:
+    clock = ManualClock()
+    options = ServeOptions(robot=watching_a_rate, backend=backend, data=":memory:")
+    files = read_files(options)
+
+    stores = await open_stores(options, files, clock)
+    clock.stall(0.3)
+    core = compose(options, clock, files, stores).supervisor.core
+
+    assert stores.journal is not None
+    again = core_of_boot(stores.journal.boot).core
+    assert core.wake_at() == again.wake_at() == seconds(2.0)
 
 
 def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:
