@@ -1,6 +1,6 @@
 """What reactions do to their parts: other targets in force, and restarts of nodes."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
@@ -50,8 +50,17 @@ class Moving:
         """Return the parts whose targets are those of reactions."""
         return self._displacer.keys()
 
-    def restore(self, restored: Restored, now: Instant) -> None:
-        """Displace what an earlier run had displaced; nothing moves because of that."""
+    def restore(self, restored: Restored, acting: Iterable[Reaction], now: Instant) -> None:
+        """Displace what an earlier run had displaced; nothing moves because of that.
+
+        Args:
+            restored: What was kept.
+            acting: The reactions that acted; those that restart a node have done so once.
+            now: The current time.
+        """
+        self._restarting = {
+            each.part: each for each in acting if each.declared.action is Action.RESTART
+        }
         found = [
             displacer
             for because in (Because.REACTION, Because.LOCAL)

@@ -132,7 +132,8 @@ class Reactions(Concern):
             reaction.reported = reaction.state
             self._effects.restore(reaction)
             self._views.note(reaction)
-        self._moving.restore(restored, now)
+        acting = [each for each in self._reactions if each.state is ReactionState.ACTING]
+        self._moving.restore(restored, acting, now)
         self._revision = None
 
     def _take_arm(self, request: ArmRequest, now: Instant) -> None:

@@ -41,6 +41,21 @@ def test_after_a_restart_a_reaction_may_still_bring_to_rest() -> None:
     assert robot.actual("carrier") == "inactive"
 
 
+def test_a_node_that_a_reaction_restarted_is_not_restarted_once_more() -> None:
+    again = 'AGAIN: {when: "a", action: restart}'
+    robot = ReactingRobot(of_lidar=again).see(3, a=True)
+    assert robot.actual("lidar") == "active"
+
+    robot.come_back().see(3, a=True)
+    assert (robot.state("AGAIN", "lidar"), robot.actual("lidar")) == ("acting", "active")
+    assert robot.happened("change.step_started") == []
+
+    robot.ask_mode("carrier", "FAST")
+    robot.see(a=False).see(3, a=True)
+    assert len(robot.happened("change.step_started")) == 4
+    assert robot.actual("lidar") == "active"
+
+
 def test_a_budget_is_not_refilled_by_a_restart_however_long_it_takes() -> None:
     robot = ReactingRobot(TWICE)
     for _ in range(2):
