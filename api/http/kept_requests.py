@@ -3,7 +3,9 @@
 from typing import Annotated
 
 from fastapi import Depends, Query, Request
+from pydantic import Field
 
+from api.http.schemas.base import Body
 from domain.inputs import Input
 from domain.outbox import Outputs
 from service.supervisor import Supervisor
@@ -42,7 +44,20 @@ async def _kept_requests(request: Request) -> KeptRequests:
 
 KeptDep = Annotated[KeptRequests, Depends(_kept_requests)]
 
-VolatileQuery = Annotated[
-    bool,
-    Query(description="Do it though storage fails; a restart of the service may forget it"),
-]
+_VOLATILE = "Do it though storage fails; a restart of the service may forget it"
+
+VolatileQuery = Annotated[bool, Query(description=_VOLATILE)]
+
+
+class VolatileBody(Body):
+    """Whether something is done though storage fails, for a request that needs no body."""
+
+    volatile: bool = Field(default=False, description=_VOLATILE)
+
+
+async def _volatile(body: VolatileBody | None = None, *, volatile: VolatileQuery = False) -> bool:
+    return volatile or (body is not None and body.volatile)
+
+
+VolatileDep = Annotated[bool, Depends(_volatile)]
+"""The same in the query or in a body, which may be left out; for routes of class `JsonRoute`."""

@@ -103,6 +103,7 @@ LOW_BATTERY = {"error": "BATTERY_LOW"}
 LOST_ARM = {"part": "arm", "error": "LOST"}
 """Of a device, which a robot of one computer does not have."""
 OVER = {"active": False}
+VOLATILE = {"volatile": True}
 KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
 CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
 """What the robot of the story supervises of its nodes."""
@@ -236,7 +237,7 @@ _HEALTH = (
         body={"for_s": 600, "reason": "its computer is being changed"},
     ),
     Asked("DELETE /devices/{part}/errors/{error}/shelf", "It is back", LOST_ARM),
-    Asked("POST /devices/{part}/errors/{error}/acknowledge", "It is seen", LOST_ARM),
+    Asked("POST /devices/{part}/errors/{error}/acknowledge", "It is seen", LOST_ARM, body=VOLATILE),
     Asked("GET /monitors", "How fast the battery runs down"),
     Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
     Asked("GET /errors", "Those that are on", query={"active": "true"}),
@@ -247,7 +248,7 @@ _HEALTH = (
     Asked("GET /nodes/{part}/errors", "All is well", BASE),
     Asked("PUT /errors/{error}/shelf", "For ten minutes", LOW_BATTERY, body=KNOWN),
     Asked("DELETE /errors/{error}/shelf", "Announce it again", LOW_BATTERY),
-    Asked("POST /errors/{error}/acknowledge", "A flat battery", LOW_BATTERY),
+    Asked("POST /errors/{error}/acknowledge", "A flat battery", LOW_BATTERY, body=VOLATILE),
     *(
         asked
         for kind, part in (("systems", ACTUATOR), ("nodes", BASE))
@@ -267,6 +268,7 @@ _HEALTH = (
                 f"POST /{kind}/{{part}}/errors/{{error}}/acknowledge",
                 "It is seen",
                 {**part, "error": "DEVIATES"},
+                body=VOLATILE,
             ),
         )
     ),
@@ -321,6 +323,7 @@ _HEALTH = (
                 f"POST /{kind}/{{part}}/reactions/{{reaction}}/acknowledge",
                 "It is seen",
                 reaction,
+                body=VOLATILE,
             ),
         )
     ),

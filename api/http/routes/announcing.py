@@ -12,7 +12,7 @@ from fastapi import APIRouter, Path, Response
 
 from api.http.dependencies import ActorDep, PartDep, SupervisorDep
 from api.http.error_text import error_text
-from api.http.kept_requests import KeptDep, VolatileQuery
+from api.http.kept_requests import KeptDep, VolatileDep
 from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import timestamp
@@ -58,8 +58,7 @@ async def acknowledge_part_error(
     supervisor: SupervisorDep,
     kept: KeptDep,
     actor: ActorDep,
-    *,
-    volatile: VolatileQuery = False,
+    volatile: VolatileDep,
 ) -> Response:
     """Say that somebody has seen an error of the part.
 

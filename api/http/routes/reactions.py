@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request, Response
 
 from api.http.dependencies import ActorDep, PartDep, PartPath, SupervisorDep, known_part
-from api.http.kept_requests import KeptDep, VolatileQuery
+from api.http.kept_requests import KeptDep, VolatileDep
 from api.http.longer_names import part_of_longer_name
 from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
@@ -70,8 +70,7 @@ async def acknowledge_reaction(
     supervisor: SupervisorDep,
     kept: KeptDep,
     actor: ActorDep,
-    *,
-    volatile: VolatileQuery = False,
+    volatile: VolatileDep,
 ) -> ReactionJson:
     """Say that somebody has seen what a reaction did.
 

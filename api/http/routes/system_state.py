@@ -5,13 +5,14 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.kept_requests import KeptDep, VolatileQuery
+from api.http.kept_requests import KeptDep, VolatileDep
+from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
 from api.http.schemas.health import SystemStateJson
 from domain.inputs import AcknowledgeRequest
 from service.supervisor import Supervisor
 
-router = APIRouter(tags=["health"])
+router = APIRouter(tags=["health"], route_class=JsonRoute)
 
 
 def current_system_state(supervisor: Supervisor) -> SystemStateJson:
@@ -37,8 +38,7 @@ async def acknowledge_error(
     supervisor: SupervisorDep,
     kept: KeptDep,
     actor: ActorDep,
-    *,
-    volatile: VolatileQuery = False,
+    volatile: VolatileDep,
 ) -> SystemStateJson:
     """Acknowledge an error that requires it; the error ends once its cause is gone as well."""
     await kept.submit(AcknowledgeRequest(error, actor), volatile=volatile)

@@ -3,9 +3,12 @@
 from types import SimpleNamespace
 
 import pytest
-from fastapi import Request
+from fastapi import APIRouter, FastAPI, Request
+from httpx import ASGITransport, AsyncClient
 
-from api.http.kept_requests import DURABLE, KeptRequests
+from api.http.kept_requests import DURABLE, KeptRequests, VolatileDep
+from api.http.limits import ServiceLimits
+from api.http.request_body import JsonRoute
 from domain.inputs import HoldRequest, Input
 from domain.outbox import NOTHING, Outputs
 from service.keeper import Taken
@@ -48,3 +51,33 @@ async def test_the_answer_is_told_whether_the_outcome_is_on_disk(volatile: bool)
 
 async def test_of_a_robot_that_keeps_nothing_nothing_is_told() -> None:
     assert (await submit(Robot(journal=None)))[1] == []
+
+
+@pytest.mark.parametrize(
+    ("query", "body", "is_volatile"),
+    [
+        ("", "", False),
+        ("", "{}", False),
+        ("", '{"volatile": false}', False),
+        ("", '{"volatile": true}', True),
+        ("?volatile=true", "", True),
+        ("?volatile=true", "{}", True),
+    ],
+)
+async def test_a_request_says_in_its_query_or_its_body_that_it_may_be_forgotten(
+    query: str, body: str, is_volatile: bool
+) -> None:
+    router = APIRouter(route_class=JsonRoute)
+
+    @router.post("/seen")
+    async def see(volatile: VolatileDep) -> bool:
+        return volatile
+
+    app = FastAPI()
+    app.include_router(router)
+    app.state.limits = ServiceLimits()
+    client = AsyncClient(transport=ASGITransport(app), base_url="http://robot")
+
+    answer = await client.post(f"/seen{query}", content=body)
+
+    assert answer.json() is is_volatile

@@ -55,6 +55,19 @@ async def test_an_error_of_the_robot_itself_is_acknowledged_while_it_is_on(
 
 
 @pytest.mark.parametrize("path", [LOST, LOW])
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [('{"volatil": true}', 422), ('{"volatile": "yes"}', 422), ("[1]", 422), ("{seen", 400)],
+)
+async def test_an_acknowledgement_with_a_body_that_says_something_else_is_rejected(
+    robot: HttpRobot, path: str, body: str, status: int
+) -> None:
+    answer = await robot.http.post(f"{path}/acknowledge", content=body)
+
+    assert answer.status_code == status
+
+
+@pytest.mark.parametrize("path", [LOST, LOW])
 async def test_an_error_is_shelved_with_a_reason_until_its_time_is_up(
     robot: HttpRobot, path: str
 ) -> None:

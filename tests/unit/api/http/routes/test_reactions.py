@@ -99,6 +99,12 @@ async def test_a_reaction_is_acknowledged(carrier: HttpRobot) -> None:
     assert (await carrier.http.delete("/holds/reaction:HALT")).status_code == 409
 
 
+async def test_an_acknowledgement_with_an_unknown_member_is_rejected(carrier: HttpRobot) -> None:
+    answer = await carrier.http.post(f"{LIMP}/acknowledge", json={"reason": "seen"})
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "INVALID_BODY")
+
+
 async def test_an_unknown_reaction_is_not_found(carrier: HttpRobot) -> None:
     answer = await carrier.http.patch("/nodes/drive/reactions/LIMP", json={"arm": "passive"})
 
