@@ -7,7 +7,7 @@ from pathlib import Path
 from api.cli.checked_file import CheckedFile
 from domain.computers import ComputerName
 from domain.devices.sub_model import LeftOut
-from domain.errors import InvalidModelError
+from domain.errors import InvalidModelError, UnknownErrorNameError, UnknownSignalError
 from domain.findings import Finding
 from domain.health.signals import SignalSettings, default_signals
 from domain.parts.system_model import SmhModel
@@ -17,6 +17,8 @@ from service.files.robot_file import InvalidRobotFileError, read_robot_file
 from service.files.text_file import read_text_file
 
 _STANDARD_INPUT = Path("/dev/stdin")
+_OF_SIGNALS = frozenset({UnknownSignalError.code, UnknownErrorNameError.code})
+"""Codes of warnings about names that signals of the robot file, and their errors, may have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,17 +51,24 @@ def read_robot_files(name: str, robot: str | None) -> RobotFiles:
     settings_text = read_text_file(Path(robot))
     model, findings = _read(text)
     if model is None:
-        return RobotFiles((CheckedFile(name, text, findings),), None, ())
+        return RobotFiles((CheckedFile(name, text, _decided(findings)),), None, ())
     try:
         settings = read_robot_file(settings_text, model)
     except InvalidRobotFileError as error:
         of_robot = CheckedFile(robot, settings_text, tuple(error.findings))
-        return RobotFiles((CheckedFile(name, text, findings), of_robot), None, ())
+        return RobotFiles((CheckedFile(name, text, _decided(findings)), of_robot), None, ())
     signals = settings.to_signal_settings()
     model, findings = _read(text, signals)
     of_model, of_robot = CheckedFile(name, text, findings), CheckedFile(robot, settings_text, ())
     left_out = {} if model is None else left_to_supervisor(model, settings)
     return RobotFiles((of_model, of_robot), model, signals, left_out)
+
+
+def _decided(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return findings about a model without those that the signals of its robot would decide."""
+    return tuple(
+        each for each in findings if each.severity == "error" or each.code not in _OF_SIGNALS
+    )
 
 
 def _read(

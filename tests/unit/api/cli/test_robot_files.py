@@ -58,6 +58,25 @@ def test_an_invalid_robot_file_is_told_beside_the_model(model: Path, robot: Path
     assert [file.is_valid for file in read.files] == [True, False]
 
 
+@pytest.mark.parametrize(
+    ("of_model", "of_robot"),
+    [("parts: []", LOAD), ("", "nodes: {nobody: {}}\n" + LOAD)],
+)
+def test_of_signals_that_were_not_read_none_is_said_to_be_unknown(
+    model: Path, robot: Path, of_model: str, of_robot: str
+) -> None:
+    hot = '      errors: {HOT: {when: "load > 5"}, WORSE: {when: "error.OVERLOAD"}}\n'
+    model.write_text(f"drive:\n  ros__parameters:\n      type: node\n{hot}{of_model}\n")
+    robot.write_text(of_robot)
+
+    read = read_robot_files(str(model), str(robot))
+
+    assert read.model is None
+    found = [finding.code for file in read.files for finding in file.findings]
+    assert len(found) == 1
+    assert found[0] not in ("UNKNOWN_SIGNAL", "UNKNOWN_ERROR")
+
+
 def test_a_file_that_is_not_there_is_told(model: Path) -> None:
     with pytest.raises(UnreadableFileError):
         read_robot_files(str(model), "/nowhere/robot.yaml")
