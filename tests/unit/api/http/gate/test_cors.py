@@ -67,6 +67,7 @@ async def test_it_writes_with_the_token() -> None:
     assert without.status_code == 401
     assert without.headers["access-control-allow-origin"] == GRAFANA["origin"]
     assert answer.status_code == 200
+    assert "Pilothouse-Durable" in answer.headers["access-control-expose-headers"].split(", ")
 
 
 async def test_without_a_token_it_only_reads() -> None:
