@@ -5,12 +5,13 @@ from itertools import islice
 
 from domain.actor import NOBODY
 from domain.changes.admission import ChangeAdmission
+from domain.changes.plan import targets_of
 from domain.changes.pursuit import request_towards
 from domain.findings import Blocker
 from domain.health.health import Health
 from domain.parts.node_doubts import doubt_of
 from domain.parts.parts import Parts
-from domain.state_and_mode import PartName
+from domain.state_and_mode import PartName, StateAndMode
 
 DEVIATES = "DEVIATES"
 MOST_REASONS = 50
@@ -67,7 +68,30 @@ class Whys:
         label = inference.actual(cause).state_and_mode.label
         since = self._parts.view(cause).deviation_since
         path = self._parts.model.path_down(part, cause)
-        yield Blocker(DEVIATES, message, path, label, target.label, since)
+        others = tuple(islice(self._asked_elsewhere(cause, target, path), MOST_REASONS))
+        yield Blocker(
+            DEVIATES,
+            message,
+            path,
+            label,
+            target.label,
+            since,
+            root_cause=not others,
+            causes=others,
+        )
+
+    def _asked_elsewhere(
+        self, system: PartName, target: StateAndMode, path: tuple[PartName, ...]
+    ) -> Iterator[Blocker]:
+        """Yield the nodes below a system of which something else was requested."""
+        model = self._parts.model
+        for node, wanted in targets_of(model, system, target).items():
+            asked = self._parts.inference.target(node)
+            if node not in model.nodes or asked is None or asked == wanted:
+                continue
+            message = f"the target of {node} is {asked.label}, and {system} needs {wanted.label}"
+            below = (*path, *model.path_down(system, node)[1:])
+            yield Blocker(DEVIATES, message, below, asked.label, wanted.label)
 
     def _of_nodes(self, part: PartName) -> Iterator[Blocker]:
         """Yield why each node below is elsewhere, in the order of the file."""

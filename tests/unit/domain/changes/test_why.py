@@ -58,3 +58,7 @@ def test_a_system_whose_part_was_asked_for_something_else_says_so() -> None:
     robot.advance(3)
     (why,) = robot.core.why(ACTUATION)
     assert (why.code, why.path, why.threshold) == ("DEVIATES", ("actuation",), "inactive")
+    (other,) = why.causes
+    assert other.message == "the target of drive_base is active.FAST, and actuation needs inactive"
+    assert (other.path, other.root_cause) == (("actuation", "drive_base"), True)
+    assert not why.root_cause
