@@ -82,9 +82,18 @@ class Reaction:
         return self.state in (ReactionState.ACTING, ReactionState.PASSIVE)
 
     @property
+    def called_by(self) -> "Reaction | None":
+        """Return the reaction in whose place it is called for; None: its own condition does."""
+        is_own = self.conditions.truth(self.declared.when) is not Truth.FALSE
+        return None if is_own else self.escalated_by
+
+    @property
     def words(self) -> str:
         """Return what calls for it, in the words of the model file."""
-        return f"{self.part}: {self.declared.when.text}"
+        by = self.called_by
+        if by is None:
+            return f"{self.part}: {self.declared.when.text}"
+        return f"{self.part}: reaction {by.name} had no effect ({by.words})"
 
     @property
     def hold(self) -> str:

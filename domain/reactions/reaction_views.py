@@ -87,7 +87,8 @@ class ReactionViews:
                 is_gone = not self._triggers.has_cause(reaction)
                 if is_gone:
                     return "an acknowledgement"
-                ends = f"an end of: {when}"
+                by = reaction.called_by
+                ends = f"an end of: {when if by is None else f'reaction {by.name}'}"
                 is_latched = declared.until is Until.ACKNOWLEDGED
                 is_seen = self._triggers.is_acknowledged(reaction)
                 return f"{ends}, and an acknowledgement" if is_latched and not is_seen else ends

@@ -17,6 +17,9 @@ def test_a_mode_that_is_not_reached_in_time_leads_to_another_reaction() -> None:
     robot.advance(2)
     assert robot.holds == ["reaction:HALT"]
     assert robot.why("HALT") == ["reaction LIMP of carrier had no effect within 3 s"]
+    hold = robot.happened("hold.set")[-1]
+    assert hold["reason"] == "carrier: reaction LIMP had no effect (carrier: a)"
+    assert robot.reaction("HALT").waits_for == "an end of: reaction LIMP"
 
 
 def test_a_mode_that_is_reached_in_time_leads_to_nothing() -> None:
