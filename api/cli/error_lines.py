@@ -26,6 +26,12 @@ def is_silenced(item: Json) -> bool:
     return bool(item["suppressed"]) or item["shelved_until_at"] is not None
 
 
+def is_pressing(item: Json) -> bool:
+    """Tell whether somebody has to attend to an error soon, and it follows from no other."""
+    is_root = bool(item["root_cause"])
+    return is_on(item) and is_root and item["severity"] != "warning" and not is_silenced(item)
+
+
 def error_lines(items: Sequence[Json]) -> Iterator[str]:
     """Yield a line for each error, what is silenced last.
 

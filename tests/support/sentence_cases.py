@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from itertools import product
 from typing import Any, Literal
 
+from api.cli.error_lines import error_name
 from api.cli.monitor.store import Json
 from tests.support import monitor as told
 
@@ -31,6 +32,7 @@ def members(
     stop: Json | None = None,
     vehicle: Json | None = None,
     devices: tuple[Json, ...] = (),
+    errors: tuple[Json, ...] = (),
 ) -> dict[str, Any]:
     """Return the members of a complete frame."""
     return {
@@ -42,6 +44,7 @@ def members(
         "emergency_stop": stop or told.stop(),
         "vehicle": vehicle or moving(0.0),
         "devices": told.named("device", *devices),
+        "errors": {error_name(error): error for error in errors},
     }
 
 
@@ -239,6 +242,41 @@ CASES = (
         members=members(
             parts=({**told.off_target("lidar"), "actual": told.part("lidar", "unknown")["actual"]},)
         ),
+    ),
+    Case(
+        "an urgent error while all parts are as they should be",
+        "IDLE",
+        "attention",
+        "SCAN_SLOW: it is so; no task",
+        members=members(
+            errors=(
+                told.error("SCAN_SLOW"),
+                {**told.error("WARM"), "severity": "warning"},
+                {**told.error("SHELVED"), "shelved_until_at": told.AT},
+                {**told.error("FOLLOWS"), "root_cause": False},
+                told.error("GONE", state="returned"),
+            )
+        ),
+    ),
+    Case(
+        "more urgent errors than are named",
+        "RUNNING",
+        "attention",
+        "camera.E0: it is so; task t1 42 %, waypoint 41 of 66",
+        ("camera.E1: it is so", "camera.E2: it is so", "1 more such error"),
+        members=members(
+            running(),
+            told.task(),
+            vehicle=moving(2.8),
+            errors=tuple(told.error(f"E{n}", "camera") for n in range(4)),
+        ),
+    ),
+    Case(
+        "an urgent error of a part that is told already",
+        "IDLE",
+        "attention",
+        "manipulator is unreachable; no task",
+        members=members(parts=(DEAD,), errors=(told.error("UNREACHABLE", "manipulator"),)),
     ),
     Case(
         "a driven task beside a dead node",

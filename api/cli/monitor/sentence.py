@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from api.cli.error_lines import error_name, is_pressing
 from api.cli.monitor import words
 from api.cli.monitor.device_words import not_stopped_words, stop_places
 from api.cli.monitor.part_problems import part_problems
@@ -157,7 +158,8 @@ def _calm_sentence(robot: Robot) -> Sentence:
     state = robot.system_state or {}
     word, text = _activity(robot)
     reasons = [reason["message"] for reason in state["reasons"]]
-    found = [*reasons, *_movement(robot), *part_problems(robot.parts or {}, robot.devices)]
+    found = [*_movement(robot), *part_problems(robot.parts or {}, robot.devices)]
+    found = [*reasons, *(found or _pressing(robot))]
     text = "; ".join([*found[:1], text])
     more = tuple(found[1:])
     if alarm := alarm_of(state):
@@ -166,6 +168,20 @@ def _calm_sentence(robot: Robot) -> Sentence:
     return Sentence(
         word, text, more, "attention" if found or is_unable else _LEVELS.get(word, "calm")
     )
+
+
+def _pressing(robot: Robot) -> list[str]:
+    """Return the urgent errors of a robot that looks well otherwise."""
+    texts = [_error_words(error) for error in robot.errors.values() if is_pressing(error)]
+    left = len(texts) - _NAMED
+    if left <= 0:
+        return texts
+    return [*texts[:_NAMED], f"{left} more such {'error' if left == 1 else 'errors'}"]
+
+
+def _error_words(error: Json) -> str:
+    name = error_name(error)
+    return f"{name}: {error['message']}" if error["message"] else name
 
 
 def alarm_of(state: Json) -> str | None:

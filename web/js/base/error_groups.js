@@ -27,6 +27,11 @@ export function isSilenced({ suppressed, shelved_until_at }) {
   return suppressed || shelved_until_at !== null;
 }
 
+/** Whether somebody has to attend to it soon, and it follows from no other. */
+export function isPressing(error) {
+  return isOn(error) && error.root_cause && error.severity !== "warning" && !isSilenced(error);
+}
+
 /** "BATTERY_LOW", or "lidar.SILENT" for an error of a part. */
 export function errorName({ part, error }) {
   return part === null ? error : `${part}.${error}`;

@@ -3,6 +3,7 @@
  * `api/cli/monitor/sentence.py` has the same rules; one test runs both over the same cases.
  */
 
+import { errorName, isPressing } from "/web/js/base/error_groups.js";
 import { partProblems } from "/web/js/base/part_problems.js";
 import { currentTask } from "/web/js/base/store.js";
 import { percent, speed, TASK_STATUS, waypointWords } from "/web/js/base/task_words.js";
@@ -51,12 +52,23 @@ export function robotSentence(state) {
     return sentence(["error", "error"], alarm ?? "ERROR", text, more);
   }
   const { word, text } = activity(state, task);
-  const [first, ...more] = [...reasonTexts, ...found];
+  const [first, ...more] = [...reasonTexts, ...(found.length ? found : pressing(state))];
   const { vehicle, drive_process: undriven, navigation } = state.holds;
   const isWrong = first || vehicle || undriven || navigation;
   const level = alarm ? "error" : isWrong ? "attention" : (LEVELS[word] ?? "calm");
   const sign = alarm ? "error" : word.toLowerCase();
   return sentence([level, sign], alarm ?? word, first ? `${first}; ${text}` : text, more);
+}
+
+/** The urgent errors of a robot that looks well otherwise; those of parts are told with these. */
+function pressing({ errors }) {
+  const all = Object.values(errors).filter(isPressing).map(errorWords);
+  const left = all.length - NAMED;
+  return left > 0 ? [...all.slice(0, NAMED), `${left} more such ${left === 1 ? "error" : "errors"}`] : all;
+}
+
+function errorWords(error) {
+  return error.message ? `${errorName(error)}: ${error.message}` : errorName(error);
 }
 
 /** Whether the vehicle stands under the emergency stop. */
