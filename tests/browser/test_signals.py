@@ -210,6 +210,9 @@ def test_of_two_hundred_signals_only_those_in_sight_are_drawn_and_a_filter_finds
     many.request("POST", "/signals/motor_150_temperature", {"value": 85.5})
     expect(row(page, MOTOR)).to_contain_text("85.5 °C")
     expect(row(page, MOTOR)).to_contain_text("HOT_150")
+    # It is urgent: the header asks for attention, and Why has it once, among its errors.
+    expect(page.locator("ph-state-bar")).to_contain_text("HOT_150: motor_150_temperature 85.5 °C")
+    expect(page.locator("ph-why .others")).not_to_contain_text("HOT_150")
     search.fill("nothing")
     expect(page.get_by_text("No signal is called “nothing”.")).to_be_visible()
     search.fill("")

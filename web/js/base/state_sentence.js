@@ -67,7 +67,8 @@ function pressing({ errors }) {
   return left > 0 ? [...all.slice(0, NAMED), `${left} more such ${left === 1 ? "error" : "errors"}`] : all;
 }
 
-function errorWords(error) {
+/** What the sentence says of an urgent error. */
+export function errorWords(error) {
   return error.message ? `${errorName(error)}: ${error.message}` : errorName(error);
 }
 

@@ -6,7 +6,7 @@
 
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { errorName, isOn } from "/web/js/base/error_groups.js";
-import { stateSentence } from "/web/js/base/state_sentence.js";
+import { errorWords, stateSentence } from "/web/js/base/state_sentence.js";
 import "/web/js/inspector/alarm_list.js";
 import "/web/js/inspector/reaction_list.js";
 
@@ -68,14 +68,14 @@ class Why extends HTMLElement {
 function otherReasons({ live, state, contact }) {
   const said = stateSentence(state, state === live ? contact : { level: "live" });
   if (said.level === "calm") return [];
-  const told = Object.values(state.errors).filter(isOn).map(toldBy);
+  const told = Object.values(state.errors).filter(isOn).flatMap((error) => [toldBy(error), errorWords(error)]);
   const isTold = (line) => told.some((words) => line.startsWith(words)) || (told.length > 0 && isRest(line));
   return [said.text, ...said.more].filter((line) => !isTold(line));
 }
 
-/** Whether a line counts parts or devices beside those that the header names; the errors name all. */
+/** Whether a line counts what stands beside that which the header names; the errors name all. */
 function isRest(line) {
-  return /^\d+ more such (parts?|devices)$/.test(line);
+  return /^\d+ more such (parts?|devices|errors?)$/.test(line);
 }
 
 /** How the line begins that an error makes superfluous. */
