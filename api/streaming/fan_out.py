@@ -26,8 +26,13 @@ from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
 
-PING_EVERY = seconds(2.2)
-"""Clients that miss a ping are slow when the next one is due, 4.4 s after their last sign."""
+PING_EVERY = seconds(0.7)
+ANSWER_WITHIN = seconds(0.5)
+"""A client whose answer to a ping takes longer is slow. It must be seen soon: a library that has
+taken some messages reads no more until most of them are used, and then all that has come meanwhile,
+so that its answers come ever later."""
+_ON_TIME = seconds(0.2)
+"""If we are later than that, answers may wait for us."""
 _CLIENTS_AT_ONCE = 100
 """Clients written to before other tasks of the event loop run: about 1 ms."""
 _BYTES_AT_ONCE = 131_072
@@ -63,6 +68,8 @@ class FanOut:
         self._groups: dict[frozenset[str], Group] = {}
         self._clock = clock
         self._ping_at = clock.now() + PING_EVERY
+        self._answers_due: Instant | None = None
+        """When those who have not answered the last ping are slow; None: that was judged."""
         self._aged: deque[StreamClient] = deque()
         """Clients that are due for a complete frame; those that left meanwhile stay for a while."""
         self._woken = asyncio.Event()
@@ -168,11 +175,17 @@ class FanOut:
         self._owing_since = self._clock.now()
 
     def _ping(self) -> bytes:
-        """Return a ping if one is due."""
+        """Return a ping if one is due, and judge who has answered the last one in time."""
         now = self._clock.now()
+        if self._answers_due is not None and now >= self._answers_due:
+            is_on_time = now - self._answers_due < _ON_TIME
+            self._answers_due = None
+            if is_on_time:
+                for group in self._groups.values():
+                    group.part_from_late()
         if now < self._ping_at:
             return b""
-        self._ping_at = now + PING_EVERY
+        self._ping_at, self._answers_due = now + PING_EVERY, now + ANSWER_WITHIN
         for group in self._groups.values():
             group.ask_all()
             if not self._aged:

@@ -8,12 +8,7 @@ from domain.timebase import Instant, seconds
 from service.clock import Clock
 
 PATIENCE = seconds(4.5)
-"""A client with waiting data that shows no sign of reading for this long is dropped."""
-
-HIDDEN_PATIENCE = seconds(30)
-"""The same of a client that answered before, while only its own buffers can hold data: those of its
-kernel and its library take 200 kB and more, and a slow reader answers a ping only once it has read
-all of that. Nothing is written to it meanwhile."""
+"""A client that has something to read and shows no sign of reading for this long is dropped."""
 
 COMPLETE_EVERY = seconds(30)
 """Time between two complete frames for a client that skips none."""
@@ -75,18 +70,22 @@ class Group:
             self.in_step[client.transport] = client
 
     def ask_all(self) -> None:
-        """Let all clients owe an answer to the ping that is sent next.
+        """Let clients owe an answer to the ping that is sent next.
 
-        Who still owes the last one is slow from now on. Clients with waiting data may not have
-        received that ping yet; see `StreamClient.is_stuck`.
+        Slow ones have pings of their own. Those with waiting data may not receive this one in time;
+        see `StreamClient.is_stuck`.
         """
         for client in self.clients:
-            if client.is_slow or client.transport.get_write_buffer_size():
-                continue
-            if client.owes_answer:
+            if not (client.is_slow or client.transport.get_write_buffer_size()):
+                client.owes_answer = True
+
+    def part_from_late(self) -> None:
+        """Let those who still owe an answer continue alone, as slow ones."""
+        for client in self.clients:
+            is_late = client.owes_answer and not client.is_slow
+            if is_late and not client.transport.get_write_buffer_size():
                 client.begin_to_be_slow()
                 self.part_from(client)
-            client.owes_answer = True
 
     def due_for_complete(self, now: Instant) -> list["StreamClient"]:
         """Return the clients whose last complete frame is too long ago."""
@@ -115,9 +114,6 @@ class StreamClient:
         self.complete_at = clock.now() + COMPLETE_EVERY
         """When it gets a complete frame, unless it gets one before."""
         self._unacknowledged = 0
-        self._has_answered = False
-        self._hides = False
-        """Whether it owes an answer, and all was taken by its computer."""
         self._group = group
         self._clock = clock
         self._waiting = 0
@@ -138,7 +134,6 @@ class StreamClient:
     def answered(self) -> None:
         """Note that the client answered a ping, and so reads."""
         self.owes_answer = False
-        self._has_answered = True
         self._read_at = self._clock.now()
 
     def lost(self) -> None:
@@ -156,10 +151,10 @@ class StreamClient:
         return waiting == 0 and not self.transport.is_closing()
 
     def begin_to_be_slow(self) -> None:
-        """Note that it does not keep up, or is dead: it has some time to read what there is."""
+        """Note that it does not keep up, or is dead; it has `PATIENCE` from its last sign on."""
         self._unacknowledged = unacknowledged_bytes(self.transport)
         self.is_slow = True
-        self._read_at = self._skipped_at = self._clock.now()
+        self._skipped_at = self._clock.now()
 
     def note_asked(self, skipped: int) -> None:
         """Note that a ping of its own was written to a slow client: its answer tells that it reads.
@@ -191,10 +186,10 @@ class StreamClient:
         if left < self._unacknowledged:
             self._read_at = now
         self._unacknowledged = left
-        self._hides = self.owes_answer and left == 0
-        return waiting == 0 and left <= _IN_FLIGHT_BYTES and not self._hides
+        # What its own computer has taken it may not have read; its answer tells.
+        is_read = left <= _IN_FLIGHT_BYTES and not (self.owes_answer and left == 0)
+        return waiting == 0 and is_read
 
     def is_stuck(self, now: Instant) -> bool:
         """Tell whether it has neither read waiting data nor answered a ping for too long."""
-        patience = HIDDEN_PATIENCE if self._hides and self._has_answered else PATIENCE
-        return now - self._read_at > patience and not self.transport.is_closing()
+        return now - self._read_at > PATIENCE and not self.transport.is_closing()

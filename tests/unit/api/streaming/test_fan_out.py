@@ -181,16 +181,29 @@ async def test_a_client_that_does_not_read_is_dropped_though_its_system_takes_al
     ):
         await clock.advance(10)
         mute.answers = False
-        await clock.advance(5)
-        written = len(mute.written)
-        await clock.advance(25)
+        await clock.advance(2)
         assert not mute.closing
-        assert len(mute.written) == written, "nothing grows old in its buffers"
-        await clock.advance(10)
+        written = len(mute.written)
+        await clock.advance(3)
 
     assert (mute.closing, other.closing) == (True, False)
+    assert len(mute.written) == written + 1, "nothing but the end grows old in its buffers"
     assert fan_out.dropped == 1
-    assert len(other.frames) == 1001
+    assert len(other.frames) == 301
+
+
+async def test_after_a_pause_of_the_service_nobody_is_slow_whose_answer_waits_for_it(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    wire = Wire()
+    with fan_out.serve(wire.connection, STATE, "page") as client:
+        await clock.advance(1.0)
+        wire.answers = False
+        await clock.advance(0.2)
+        assert client.owes_answer
+        clock.stall(2.0)
+        await clock.advance(0.1)
+        assert not client.is_slow
 
 
 async def test_a_client_that_stopped_to_read_long_before_it_clogs_is_not_given_more_time(

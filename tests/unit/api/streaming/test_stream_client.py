@@ -120,15 +120,16 @@ def test_a_client_that_is_lost_is_forgotten_and_comes_back_by_nothing(
     assert group.is_empty
 
 
-def test_who_owes_an_answer_when_the_next_is_asked_for_is_slow(
+def test_who_still_owes_an_answer_when_it_is_due_is_slow(
     group: Group, client: StreamClient
 ) -> None:
     group.ask_all()
     client.answered()
-    group.ask_all()
+    group.part_from_late()
     assert not client.is_slow
 
     group.ask_all()
+    group.part_from_late()
     assert client.is_slow
     assert list(group.apart.values()) == [client]
 
@@ -139,7 +140,7 @@ def test_to_whom_something_waits_the_ping_may_not_have_come(
     group.ask_all()
     wire_of(client).waiting = 10
 
-    group.ask_all()
+    group.part_from_late()
     assert not client.is_slow
 
 
@@ -147,7 +148,7 @@ def test_a_slow_client_is_written_to_when_it_has_answered(
     group: Group, client: StreamClient, clock: ManualClock
 ) -> None:
     group.ask_all()
-    group.ask_all()
+    group.part_from_late()
     assert not client.is_ready(clock.now())
 
     client.answered()
@@ -159,7 +160,7 @@ def test_a_slow_client_that_skips_nothing_for_a_while_is_written_to_with_the_oth
 ) -> None:
     """As after a pause of the whole service, in which nobody could answer in time."""
     group.ask_all()
-    group.ask_all()
+    group.part_from_late()
     client.note_asked(skipped=3)
     client.answered()
 
