@@ -250,7 +250,7 @@ def _with_simulated(
     )
     for left in simulated.left_out:
         log.warning("left out: %s", left)
-    _leave_to_others(share, simulated.mock, now)
+    _leave_to_others(share, simulated.mock)
     what = tuple(each for each in simulated.what if each != "nodes" or share.local_model.nodes)
     if files.is_device:
         what = ("nodes",)
@@ -286,7 +286,7 @@ def _with_ros2(
     place, link = _link_of(options, files, clock)
     if mocked and not files.is_device:
         signals = MockSignals(now)
-        _leave_to_others(share, signals, now)
+        _leave_to_others(share, signals)
         mock = MockSource(signals, clock)
         backend, status = _with_sources(files, clock, ros, (ros, mock), link)
         supervisor = Supervisor(
@@ -352,11 +352,10 @@ def _with_sources(
     return CompositeRobot(nodes, vehicle, signals), () if sources is None else sources.status
 
 
-def _leave_to_others(share: ComputerShare, mock: MockSignals | None, now: Instant) -> None:
+def _leave_to_others(share: ComputerShare, mock: MockSignals | None) -> None:
     """Let the mock not publish the signals that have a source, here or at another computer."""
-    for signal in (*share.local_robot.signals.sources, *share.read_elsewhere):
-        if mock is not None and mock.holds(signal):
-            mock.set_publishing(signal, publishing=False, now=now)
+    if mock is not None:
+        mock.leave_out((*share.local_robot.signals.sources, *share.read_elsewhere))
 
 
 def _require_types(graph: RosGraph, topics: Ros2Block) -> None:

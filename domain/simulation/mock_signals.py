@@ -1,6 +1,6 @@
 """Mock signals: held values that are published periodically."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -61,6 +61,10 @@ class MockSignals:
     def holds(self, signal: str) -> bool:
         """Tell whether the mock has this signal."""
         return signal in self._values
+
+    def leave_out(self, signals: Iterable[str]) -> None:
+        """Publish none of these signals, also not at the start; the mock need not have them."""
+        self._stopped.update(signal for signal in signals if self.holds(signal))
 
     def hold(self, signal: str, value: SignalValue, now: Instant) -> None:
         """Hold `value` from now on, and publish it at once unless publishing is stopped.

@@ -22,6 +22,7 @@ from service.onboard_parts import make_onboard
 from service.replay import core_of_boot
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
 from service.ros.interface.message_sets import MessageSet
+from service.simulation.mock_source import MockHandle
 from service.start_task import StartTaskError
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph
@@ -325,6 +326,21 @@ devices:
 @pytest.fixture
 def _zenoh() -> None:
     pytest.importorskip("zenoh")
+
+
+@pytest.mark.usefixtures("_zenoh")
+def test_the_mock_of_a_supervisor_leaves_alone_what_devices_read(robot: Path) -> None:
+    robot.write_text("devices: {arm: {parts: [manipulator], signals: [temperature]}}\n")
+    mock = composed(ServeOptions(robot=robot)).supervisor.readings.mock
+
+    assert isinstance(mock, MockHandle)
+    (first,) = mock.due()
+    assert [reading.signal for reading in first.items] == [
+        "battery_level",
+        "estop",
+        "gps_accuracy",
+        "signal_strength",
+    ]
 
 
 @pytest.mark.usefixtures("_zenoh")

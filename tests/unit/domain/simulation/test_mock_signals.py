@@ -167,3 +167,13 @@ def test_it_keeps_to_a_grid_that_begins_at_its_start() -> None:
     mock.advance(seconds(1.0))
 
     assert mock.wake_at() == seconds(1.03)
+
+
+def test_a_signal_that_is_left_out_is_not_there_from_the_start_either() -> None:
+    mock = MockSignals(START)
+    mock.leave_out(["temperature", "motor_temperature"])
+
+    ((_, values),) = published(mock, 0.0)
+
+    assert values.keys() == GOOD_VALUES.keys() - {"temperature"}
+    assert [each.signal for each in mock.view() if not each.publishing] == ["temperature"]
