@@ -370,13 +370,36 @@ class OfflineError(RefusedError):
 
 
 class ActsElsewhereError(RefusedError):
-    """A request about a reaction that a device decides about."""
+    """A reading, a report or a request about a reaction that is a device's own."""
 
     code = "ACTS_ELSEWHERE"
 
-    def __init__(self, reaction: str, device: str) -> None:
-        super().__init__(f"reaction {reaction} acts on device {device}, whatever is said here")
-        self.hint = f"arm or acknowledge it on the page of {device}"
+    def __init__(self, what: str, device: str, hint: str) -> None:
+        """State where it is decided.
+
+        Args:
+            what: The reaction, signal or error, and what is done with it on the device.
+            device: The device.
+            hint: How to ask there.
+        """
+        super().__init__(f"{what} on device {device}, whatever is said here")
+        self.hint = hint
+
+    @classmethod
+    def of_reaction(cls, reaction: str, device: str) -> "ActsElsewhereError":
+        """Return the error for a request about a reaction."""
+        hint = f"arm or acknowledge it on the page of {device}"
+        return cls(f"reaction {reaction} acts", device, hint)
+
+    @classmethod
+    def of_signal(cls, signal: str, device: str) -> "ActsElsewhereError":
+        """Return the error for a reading that did not come from the device."""
+        return cls(f"{signal} is read", device, f"post it at {device}")
+
+    @classmethod
+    def of_error(cls, error: str, device: str) -> "ActsElsewhereError":
+        """Return the error for a report that did not come from the device."""
+        return cls(f"{error} is reported", device, f"report it at {device}")
 
 
 class ProcessElsewhereError(RefusedError):

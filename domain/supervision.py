@@ -471,6 +471,14 @@ class Supervision:
         stopped, holds = self.emergency_stop().engaged, self.driving.holds
         return may_loosen(given, is_stopped=stopped, holds=holds)
 
+    def check_said_here(self, given: Input) -> None:
+        """Check that an input that did not come from a device is not a device's to say.
+
+        Raises:
+            ActsElsewhereError: A device reads the signal, or owns the part with the error.
+        """
+        self._devices.owned_facts.check_said_here(given)
+
     def lead(self) -> LeadView | None:
         """Return whose word counts at this device; None: this computer follows nobody."""
         return None if self._lead is None else self._lead.view()

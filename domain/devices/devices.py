@@ -10,6 +10,7 @@ from dataclasses import replace
 from domain.computers import ComputerName, DeviceState
 from domain.concern import Concern, Takers
 from domain.devices.device_view import DeviceView
+from domain.devices.owned_facts import OwnedFacts
 from domain.devices.settings import DeviceSettings
 from domain.errors import UnknownPartError
 from domain.events.devices import (
@@ -71,6 +72,8 @@ class Devices(Concern):
         self._outbox = outbox
         self._views = {name: _never_seen(each, start) for name, each in devices.items()}
         self._unheard = set(devices)
+        self.owned_facts = OwnedFacts(devices.values(), parts.model, errors)
+        """What only devices may say; read only."""
         """Devices that were not connected since the start."""
         self._waits_until = start + heard_within
         self._awaited = set(devices)

@@ -179,7 +179,7 @@ class Reactions(Concern):
         """
         reaction = self._of(part, name)
         if reaction.elsewhere is not None:
-            raise ActsElsewhereError(reaction.name, reaction.elsewhere)
+            raise ActsElsewhereError.of_reaction(reaction.name, reaction.elsewhere)
         return reaction
 
     def _begin_afresh(self, reaction: Reaction, now: Instant) -> None:

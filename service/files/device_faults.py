@@ -5,6 +5,7 @@ from typing import TypeAlias
 
 from domain.computers import SUPERVISOR
 from domain.devices.own_signals import readable_signals
+from domain.devices.owned_facts import is_own
 from domain.devices.sub_model import sub_model
 from domain.errors import near_match
 from domain.lifecycle import LifecycleState
@@ -13,7 +14,6 @@ from domain.state_and_mode import PartName, StateAndMode, part_name
 from service.files.devices_block import (
     VEHICLE_IS_ELSEWHERE,
     DeviceBlock,
-    is_own,
     nodes_of,
     signals_of,
 )

@@ -6,6 +6,7 @@ from typing import Annotated, TypeAlias
 from pydantic import Field, model_validator
 
 from domain.computers import ComputerName
+from domain.devices.owned_facts import is_own
 from domain.devices.settings import DeviceSettings, OfflineSettings
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName, StateAndMode, part_name
@@ -98,27 +99,6 @@ def signals_of(device: DeviceBlock, signals: SignalsBlock, model: SmhModel) -> t
         if signal.of is None and part is not None and part in model and is_own(part, nodes, model):
             own.append(name)
     return tuple(dict.fromkeys(own))
-
-
-def is_own(part: PartName, nodes: tuple[PartName, ...], model: SmhModel) -> bool:
-    """Tell whether a part consists of nodes of a device alone."""
-    below = _all_below(part, model)
-    return bool(below) and below <= set(nodes)
-
-
-def _all_below(part: PartName, model: SmhModel) -> set[PartName]:
-    """Return the nodes below a part, those included that only some modes name."""
-    found: set[PartName] = set()
-    waiting, seen = [part], {part}
-    while waiting:
-        name = waiting.pop()
-        if name in model.nodes:
-            found.add(name)
-            continue
-        further = set(model.systems[name].named_parts) - seen
-        seen |= further
-        waiting.extend(further)
-    return found
 
 
 def _offline(block: OfflineBlock) -> OfflineSettings:

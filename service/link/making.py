@@ -4,6 +4,7 @@ import secrets
 from collections.abc import Callable
 
 from domain.computers import SUPERVISOR, Incarnation
+from domain.devices.owned_facts import is_own
 from domain.devices.settings import DeviceSettings
 from domain.link.device_link import DeviceLink
 from domain.link.messages import Terms
@@ -11,7 +12,6 @@ from domain.link.settings import LinkSettings, Owned
 from domain.link.supervisor_link import SupervisorLink
 from domain.parts.system_model import SmhModel
 from service.clock import Clock
-from service.files.devices_block import is_own
 from service.files.robot_file import RobotSettings
 from service.link.device_end import DeviceEnd
 from service.link.fingerprint import fingerprint_of, model_fingerprint
