@@ -1,6 +1,6 @@
 """What one computer of a robot runs of its model and its settings."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -8,6 +8,7 @@ from pydantic import PrivateAttr
 
 from domain.computers import ComputerName
 from domain.devices.own_signals import readable_signals, signals_of_device
+from domain.devices.owned_facts import is_own
 from domain.devices.settings import DeviceSettings, LeadSettings
 from domain.devices.sub_model import LeftOut, sub_model
 from domain.errors import UnknownDeviceError
@@ -126,11 +127,20 @@ def _share_of_supervisor(model: SmhModel, robot: RobotSettings) -> ComputerShare
     elsewhere = frozenset(signal for device in devices for signal in device.signals)
     nodes = {name: node for name, node in model.nodes.items() if name not in owned}
     read = {signal.spec.name for signal in robot.to_signal_settings()} - elsewhere
-    core = RobotSettings.model_validate(_restricted(robot, model.nodes, read))
+    data = _restricted(robot, model.nodes, read)
+    if robot.ros2.diagnostics is not None:
+        _cut_diagnostics(data["ros2"], _parts_of_supervisor(model, devices))
+    core = RobotSettings.model_validate(data)
     local = core.model_copy(
         update={"nodes": {name: own for name, own in core.nodes.items() if name in nodes}}
     )
     return ComputerShare(model, core, SmhModel(nodes, {}), local, elsewhere)
+
+
+def _parts_of_supervisor(model: SmhModel, devices: Iterable[DeviceSettings]) -> frozenset[PartName]:
+    """Return the parts that no device owns alone; their errors are reported at the supervisor."""
+    theirs = {part for each in devices for part in model.parts if is_own(part, each.nodes, model)}
+    return frozenset(model.parts) - theirs
 
 
 def _restricted(

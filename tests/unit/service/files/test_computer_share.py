@@ -150,6 +150,25 @@ def test_the_supervisor_restores_nodes_of_devices_too() -> None:
     assert share().robot.to_change_settings().restored_nodes == {BASE, ARM}
 
 
+def test_each_computer_reports_the_diagnostics_of_its_own_parts() -> None:
+    model = read_model(REACTING).model
+    text = """
+devices: {base: {parts: [drive_base]}}
+ros2: {diagnostics: {errors: {motor: drive_base.HOT, grip: manipulator.LOOSE}}}
+"""
+    at_base = share_of(model, read_robot_file(written_for_device(text, "base"), model)).local_robot
+    here = share_of(model, read_robot_file(text, model)).local_robot
+    only_base = share_of(
+        model, read_robot_file(text.replace(", grip: manipulator.LOOSE", ""), model)
+    ).local_robot
+
+    assert at_base.ros2.diagnostics is not None
+    assert [*at_base.ros2.diagnostics.errors.values()] == ["drive_base.HOT"]
+    assert here.ros2.diagnostics is not None
+    assert [*here.ros2.diagnostics.errors.values()] == ["manipulator.LOOSE"]
+    assert only_base.ros2.diagnostics is None
+
+
 def test_the_supervisor_has_all_signals_and_reads_those_of_no_device() -> None:
     found = share()
 
@@ -179,7 +198,7 @@ REACTING = """
 drive_base: {ros__parameters: {type: node, errors: {HOT: {}},
   reactions: {COOL: {when: "drive_base.errors.HOT", action: state, target: inactive},
               HALT: {when: "drive_base.errors.HOT", action: stop}}}}
-manipulator: {ros__parameters: {type: node,
+manipulator: {ros__parameters: {type: node, errors: {LOOSE: {}},
   reactions: {REST: {when: "not manipulator.reachable", action: state, target: inactive}}}}
 """
 
