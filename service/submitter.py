@@ -89,10 +89,14 @@ class Submitter:
         try:
             self.submit(given)
         except PilothouseError as error:
-            if isinstance(given, Readings):
-                self._refused.note(Actor(given.source, way="ros"), error.message)
-            else:
-                log.warning("rejected %s: %s", type(given).__name__, error)
+            self.note_rejected(given, error)
+
+    def note_rejected(self, given: Input, error: PilothouseError) -> None:
+        """Log a report of an adapter that was rejected; readings are counted, too."""
+        if isinstance(given, Readings):
+            self._refused.note(Actor(given.source, way="ros"), error.message)
+        else:
+            log.warning("rejected %s: %s", type(given).__name__, error)
 
     def let_pass(self) -> None:
         """Process the deadlines that have expired by now."""

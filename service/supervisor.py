@@ -175,7 +175,7 @@ class Supervisor:
                 raised.
         """
         work = {
-            "robot": self._backend.run(self.deliver),
+            "robot": self._backend.run(self.deliver_of_here),
             "deadlines": self._submitter.run(),
             "log": log_node_incidents(self.events),
             "tick": self.publisher.run(),
@@ -200,13 +200,23 @@ class Supervisor:
         """Pass an input to the core.
 
         Raises:
-            PilothouseError: The input is rejected; it changed nothing.
+            PilothouseError: The input is rejected, or a device's to say; it changed nothing.
         """
+        self.core.check_said_here(given)
         return self._submitter.submit(given)
 
     def deliver(self, given: Input) -> None:
         """Submit a report of an adapter, and log it if it is rejected."""
         self._submitter.deliver(given)
+
+    def deliver_of_here(self, given: Input) -> None:
+        """As `deliver`, of an adapter that must not speak for a device, as only the link does."""
+        try:
+            self.core.check_said_here(given)
+        except PilothouseError as error:
+            self._submitter.note_rejected(given, error)
+            return
+        self.deliver(given)
 
     def let_pass(self) -> None:
         """Process the deadlines that have expired by now."""

@@ -93,5 +93,23 @@ def test_a_device_without_its_supervisor_says_that_it_acts_alone(
     assert run(base, "devices")[0] == 1
 
 
+def test_a_motor_that_is_hot_on_its_device_is_not_cold_at_the_supervisor(
+    computers: tuple[ServiceProcess, ServiceProcess],
+) -> None:
+    supervisor, base = computers
+    wait_for(lambda: run(supervisor, "devices")[0] == 0)
+    motor = f"{supervisor.url}/signals/motor_temperature"
+    posted = httpx.post(f"{base.url}/signals/motor_temperature", json={"value": 95})
+    assert posted.status_code == httpx.codes.OK
+    wait_for(lambda: bool(httpx.get(motor).json()["value"] == 95))
+
+    refused = httpx.post(motor, json={"value": 10})
+
+    assert (refused.status_code, refused.json()["code"]) == (409, "ACTS_ELSEWHERE")
+    time.sleep(1.5)  # so that everything was reported once more
+    shown = httpx.get(motor).json()
+    assert (shown["value"], shown["error"]) == (95.0, "MOTOR_HOT")
+
+
 def _state(computer: ServiceProcess) -> str:
     return str(httpx.get(f"{computer.url}/nodes/drive_base").json()["actual"]["state"])

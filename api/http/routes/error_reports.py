@@ -53,6 +53,8 @@ async def report_part_error(
     """Report an error of the part, or that it is over; over a restart it stays as it was reported.
 
     Only errors can be reported that the model file declares with neither `when` nor `caused_by`.
+    Those of a part that is on a device are reported at that device; at the supervisor they are 409
+    `ACTS_ELSEWHERE`.
     """
     report = ErrorReport(part, error, body.active, body.message, body.value, actor)
     await kept.submit(report, volatile=volatile)

@@ -13,8 +13,8 @@ from api.http.schemas.health import MockBody, MockJson, MockSignalJson
 from api.http.schemas.sent_values import SentSignalName
 from api.http.stop_route import StopRoute
 from domain.errors import InvalidValueError, UnknownSignalError
-from domain.inputs import Reading
-from service.readings import Mock
+from domain.inputs import Reading, Readings
+from service.readings import UNNAMED, Mock
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/mock", tags=["health"], route_class=StopRoute)
@@ -35,11 +35,17 @@ async def change_mock(
     supervisor: SupervisorDep,
     actor: ActorDep,
 ) -> MockSignalJson:
-    """Set the value of a mock signal, or stop or resume publishing it; both or none are done."""
+    """Set the value of a mock signal, or stop or resume publishing it; both or none are done.
+
+    The mock stands in for no device: a signal that one reads is 409 `ACTS_ELSEWHERE`, except an
+    `estop` that asks for a stop.
+    """
     mock = _mock_of(supervisor)
     if not mock.holds(signal):
         known = [item.signal for item in mock.view()]
         raise UnknownSignalError("signal of the mock", signal, known)
+    if body.publishing:
+        _require_own(supervisor, mock, signal)
     try:
         if body.value is not None:
             supervisor.readings.submit([Reading(signal, body.value)], actor=actor)
@@ -48,6 +54,16 @@ async def change_mock(
     if body.publishing is not None:
         mock.set_publishing(signal, body.publishing)
     return next(item for item in _signals(mock) if item.signal == signal)
+
+
+def _require_own(supervisor: Supervisor, mock: Mock, signal: str) -> None:
+    """Check that the mock may publish a signal.
+
+    Raises:
+        ActsElsewhereError: A device reads it.
+    """
+    value = next(item.value for item in mock.view() if item.signal == signal)
+    supervisor.core.check_said_here(Readings((Reading(signal, value),), UNNAMED))
 
 
 def _mock_of(supervisor: Supervisor) -> Mock:

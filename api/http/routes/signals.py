@@ -108,7 +108,8 @@ async def post_readings(
 
     They are evaluated on arrival; the answer is the resulting system state. A text named `source`
     is the source of the readings, unless there is a signal of that name. The default source is
-    `api`, or the mock if it is running.
+    `api`, or the mock if it is running. A signal that a device reads is posted at that device; at
+    the supervisor it is 409 `ACTS_ELSEWHERE`, except an `estop` that asks for a stop.
     """
     values, source = _named(body), None
     if "source" not in supervisor.core.signals() and isinstance(values.get("source"), str):
@@ -138,7 +139,8 @@ async def post_reading(
     `stamp` is only shown; it does not change the age of a reading. A reading older than the current
     one is rejected, unless it is worse. The default `source` is `api`, or the mock if it is
     running. What asks for a stop of `estop` is taken whatever else is in the body; `ignored` tells
-    what was not.
+    what was not. A signal that a device reads is posted at that device; at the supervisor it is 409
+    `ACTS_ELSEWHERE`, except an `estop` that asks for a stop.
     """
     reading = body.reading(signal, supervisor.clock)
     try:

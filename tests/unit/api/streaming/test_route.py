@@ -16,10 +16,14 @@ from api.streaming import route as stream
 from api.streaming import stream_server as stream_server_module
 from api.streaming.stream_server import stream_server
 from domain.actor import Actor
+from domain.computers import ComputerName
+from domain.devices.settings import DeviceSettings
 from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.state_and_mode import PartName
+from domain.supervision import SupervisionSettings
 from service.supervisor import Supervisor
 from tests.support.around_a_stop import ANY, ASKING, MEMBERS, WRAPPED, object_of
+from tests.support.http_robot import http_robot
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.waiting import until
@@ -578,3 +582,20 @@ async def test_a_page_of_another_origin_reads_and_sends_no_reading_without_a_tok
 
     assert [problem["code"] for problem in problems] == ["READS_ONLY", "INVALID_BODY"]
     assert supervisor.core.signal("estop").value is not True
+
+
+async def test_a_reading_of_a_signal_that_a_device_reads_is_a_problem_that_names_the_device() -> (
+    None
+):
+    base = ComputerName("base")
+    own = DeviceSettings(base, (PartName("drive_base"),), ("temperature",))
+    settings = SupervisionSettings(devices={base: own})
+    async with http_robot(mock=False, settings=settings) as robot:
+        async with WebSocketClient(robot.app) as client:
+            await in_step(client)
+            client.send({"type": "reading", "signal": "temperature", "value": 10})
+            problem = await client.frame("problem")
+
+        assert problem["code"] == "ACTS_ELSEWHERE"
+        assert problem["detail"].startswith("temperature is read on device base")
+        assert robot.supervisor.core.signal("temperature").value is None

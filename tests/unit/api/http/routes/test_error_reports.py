@@ -5,6 +5,11 @@ from typing import Any
 
 import pytest
 
+from domain.computers import ComputerName
+from domain.devices.settings import DeviceSettings
+from domain.inputs import ErrorReport
+from domain.state_and_mode import PartName
+from domain.supervision import SupervisionSettings
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
 
@@ -96,3 +101,16 @@ async def test_a_report_that_says_nothing_clear_is_rejected(
     arm: HttpRobot, body: dict[str, object]
 ) -> None:
     assert (await arm.http.post(JAMMED, json=body)).status_code == 422
+
+
+async def test_an_error_of_a_node_of_a_device_is_reported_there() -> None:
+    base = ComputerName("base")
+    devices = {base: DeviceSettings(base, (PartName("left/arm"),))}
+    async with http_robot(MODEL, mock=False, settings=SupervisionSettings(devices=devices)) as arm:
+        arm.supervisor.deliver(ErrorReport(PartName("left/arm"), "JAMMED", active=True))
+
+        answer = await arm.http.post(JAMMED, json={"active": False})
+
+        assert (answer.status_code, answer.json()["code"]) == (409, "ACTS_ELSEWHERE")
+        assert answer.json()["detail"].startswith("left/arm.JAMMED is reported on device base")
+        assert (await arm.get("/nodes/left/arm/errors?active=true"))["items"]

@@ -2,7 +2,13 @@
 
 import pytest
 
+from domain.computers import ComputerName
+from domain.devices.settings import DeviceSettings
+from domain.inputs import Reading, Readings
+from domain.state_and_mode import PartName
+from domain.supervision import SupervisionSettings
 from tests.support.http_robot import HttpRobot, http_robot
+from tests.support.live_robot import running
 
 
 async def test_the_mock_tells_what_it_holds_and_publishes(robot: HttpRobot) -> None:
@@ -72,3 +78,25 @@ async def test_where_the_mock_does_not_run_there_is_none() -> None:
 
         assert (shown.status_code, shown.json()["code"]) == (404, "NO_MOCK")
         assert (changed.status_code, changed.json()["code"]) == (404, "NO_MOCK")
+
+
+async def test_the_mock_publishes_nothing_that_a_device_reads() -> None:
+    base = ComputerName("base")
+    own = DeviceSettings(base, (PartName("drive_base"),), ("temperature",))
+    made = HttpRobot(settings=SupervisionSettings(devices={base: own}))
+    assert made.backend.robot.mock is not None
+    made.backend.robot.mock.leave_out(["temperature"])
+    async with running(made.supervisor), made.http:
+        made.supervisor.deliver(Readings((Reading("temperature", 95.0),), "can"))
+
+        for body in ({"publishing": True}, {"value": 10}, {"value": 10, "publishing": True}):
+            answer = await made.http.patch("/mock/temperature", json=body)
+            assert (answer.status_code, answer.json()["code"]) == (409, "ACTS_ELSEWHERE")
+        await made.pass_time(1)
+
+        held = {item["signal"]: item for item in (await made.get("/mock"))["items"]}
+        assert held["temperature"] == {"signal": "temperature", "value": 30.0, "publishing": False}
+        assert (await made.get("/signals/temperature"))["value"] == 95.0
+        assert (await made.get("/signals/battery_level"))["value"] == 1.0
+        quiet = await made.http.patch("/mock/temperature", json={"publishing": False})
+        assert quiet.status_code == 200

@@ -4,8 +4,11 @@ from collections.abc import AsyncIterator
 
 import pytest
 
+from domain.computers import ComputerName
+from domain.devices.settings import DeviceSettings
 from domain.health.signals import SignalKind, SignalSettings, SignalSpec, default_signals
-from domain.inputs import SourceFault
+from domain.inputs import Reading, Readings, SourceFault
+from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
 from service.files.robot_settings import SignalsBlock
 from tests.support.http_robot import HttpRobot, http_robot
@@ -424,3 +427,58 @@ async def test_a_simulation_has_no_history() -> None:
         answer = await robot.http.get("/signals/temperature/history")
 
     assert (answer.status_code, answer.json()["code"]) == (404, "NO_HISTORY")
+
+
+# --- signals that a device reads ----------------------------------------------------------------
+
+BASE = ComputerName("base")
+READ_ON_BASE = SupervisionSettings(
+    devices={BASE: DeviceSettings(BASE, (PartName("drive_base"),), ("temperature",))}
+)
+
+
+@pytest.fixture
+async def of_devices() -> AsyncIterator[HttpRobot]:
+    """Return a robot whose device reads the temperature, which is high."""
+    async with http_robot(mock=False, settings=READ_ON_BASE) as robot:
+        robot.supervisor.deliver(Readings((Reading("temperature", 95.0),), "can"))
+        yield robot
+
+
+@pytest.mark.parametrize(
+    ("path", "body"),
+    [
+        ("/signals/temperature", {"value": 10}),
+        ("/signals//temperature", {"value": 10}),
+        ("/signals", {"temperature": 10}),
+        ("/signals", {"battery_level": 0.3, "/temperature": 10}),
+    ],
+)
+async def test_a_reading_of_a_signal_of_a_device_is_sent_there(
+    path: str, body: dict[str, object], of_devices: HttpRobot
+) -> None:
+    answer = await of_devices.http.post(path, json=body)
+
+    problem = answer.json()
+    assert (answer.status_code, problem["code"]) == (409, "ACTS_ELSEWHERE")
+    assert problem["detail"] == "temperature is read on device base, whatever is said here"
+    assert problem["hint"] == "post it at base"
+    assert (await of_devices.get("/signals/temperature"))["value"] == 95.0
+    assert (await of_devices.get("/signals/battery_level"))["value"] is None
+    assert of_devices.supervisor.refused_readings.counts == {"http": 1}
+
+
+async def test_a_stop_beside_a_reading_of_a_device_is_taken(of_devices: HttpRobot) -> None:
+    answer = await of_devices.http.post("/signals", json={"temperature": 10, "estop": True})
+
+    assert answer.status_code == 200
+    assert [fault["code"] for fault in answer.json()["ignored"]] == ["ACTS_ELSEWHERE"]
+    assert "ESTOP" in answer.json()["errors"]
+    assert (await of_devices.get("/signals/temperature"))["value"] == 95.0
+
+
+async def test_signals_that_no_device_reads_are_posted_as_ever(of_devices: HttpRobot) -> None:
+    answer = await of_devices.http.post("/signals", json={"battery_level": 0.9})
+
+    assert answer.status_code == 200
+    assert (await of_devices.get("/signals/battery_level"))["value"] == 0.9

@@ -3,7 +3,14 @@ from typing import Any
 import pytest
 
 from domain.actor import Actor
-from domain.errors import InvalidValueError, OutdatedReadingError
+from domain.computers import ComputerName
+from domain.devices.settings import DeviceSettings
+from domain.errors import ActsElsewhereError, InvalidValueError, OutdatedReadingError
+from domain.state_and_mode import PartName
+from domain.supervision import SupervisionSettings
+from service.ros.interface.interface import RosInterface
+from service.ros.interface.settings import USUAL_SETTINGS
+from tests.support.http_robot import http_robot
 from tests.support.ros_robot import RosRobot
 
 SENDER = Actor(way="rosbridge", address="192.0.2.7")
@@ -178,3 +185,20 @@ async def test_a_rejected_reading_is_counted_and_logged(
 
     assert robot.supervisor.refused_readings.counts == {"rosbridge": 1}
     assert "rejected a reading of rosbridge:192.0.2.7: battery_level" in caplog.text
+
+
+async def test_a_topic_of_a_signal_that_a_device_reads_is_refused_and_a_stop_is_not() -> None:
+    base = ComputerName("base")
+    own = DeviceSettings(base, (PartName("drive_base"),), ("temperature", "estop"))
+    settings = SupervisionSettings(devices={base: own})
+    async with http_robot(mock=False, settings=settings) as robot:
+        heard = RosInterface(robot.supervisor, USUAL_SETTINGS).heard
+        with pytest.raises(ActsElsewhereError):
+            heard["/temperature"].take({"temperature": 10.0}, SENDER)
+        heard["/estop"].take({"enabled": True}, SENDER)
+        with pytest.raises(ActsElsewhereError):
+            heard["/estop"].take({"enabled": False}, SENDER)
+
+        assert robot.supervisor.core.signal("temperature").value is None
+        assert "ESTOP" in robot.supervisor.core.system_state().errors
+        assert robot.supervisor.refused_readings.counts == {"rosbridge": 2}
