@@ -10,6 +10,8 @@ from domain.inputs import Input
 from domain.outbox import Outputs
 from service.supervisor import Supervisor
 
+DURABLE_HEADER = "Pilothouse-Durable"
+"""The header of an answer that tells whether its outcome would survive a restart."""
 DURABLE = "pilothouse.durable"
 """Key in the scope of a request: a list that gets whether each outcome is on disk."""
 

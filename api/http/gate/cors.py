@@ -5,8 +5,8 @@ from typing import ClassVar
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from api.http.gate.durable import HEADER as DURABLE
 from api.http.gate.origins import AllowedOrigins
+from api.http.kept_requests import DURABLE_HEADER
 
 
 class CorsHeaders:
@@ -15,7 +15,7 @@ class CorsHeaders:
     The origin is named, never a wildcard. No cookie is ever used, so credentials are not allowed.
     """
 
-    EXPOSED: ClassVar = f"Allow, ETag, Location, {DURABLE}, Retry-After, WWW-Authenticate"
+    EXPOSED: ClassVar = f"Allow, ETag, Location, {DURABLE_HEADER}, Retry-After, WWW-Authenticate"
 
     def __init__(self, app: ASGIApp, allowed: AllowedOrigins) -> None:
         """Watch `app`.

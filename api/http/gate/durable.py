@@ -3,9 +3,7 @@
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from api.http.kept_requests import DURABLE
-
-HEADER = "Pilothouse-Durable"
+from api.http.kept_requests import DURABLE, DURABLE_HEADER
 
 
 class DurableHeader:
@@ -20,7 +18,7 @@ class DurableHeader:
 
         async def send_with_header(message: Message) -> None:
             if message["type"] == "http.response.start" and told:
-                MutableHeaders(scope=message)[HEADER] = "true" if all(told) else "false"
+                MutableHeaders(scope=message)[DURABLE_HEADER] = "true" if all(told) else "false"
             await send(message)
 
         await self._app({**scope, DURABLE: told}, receive, send_with_header)

@@ -4,8 +4,8 @@ import httpx
 import pytest
 from fastapi import FastAPI, Request
 
-from api.http.gate.durable import HEADER, DurableHeader
-from api.http.kept_requests import DURABLE
+from api.http.gate.durable import DurableHeader
+from api.http.kept_requests import DURABLE, DURABLE_HEADER
 
 app = FastAPI()
 app.add_middleware(DurableHeader)
@@ -23,4 +23,4 @@ async def test_the_answer_says_whether_all_is_on_disk(outcomes: str, told: str |
     async with httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://robot") as to:
         answer = await to.put(f"/holds/{outcomes}")
 
-    assert answer.headers.get(HEADER) == told
+    assert answer.headers.get(DURABLE_HEADER) == told
