@@ -146,7 +146,8 @@ Parts have these errors without a word in the model file; systems have only `DEV
 A model file can [declare further ones](../how-to/say-what-an-error-does.md), and give these another
 severity. An error puts the robot into ERROR if its severity is `critical` or `fatal`: it sets bit
 128, and is a reason whose `path` is its part. Errors of signals are `critical` unless they say
-otherwise. A node that was not yet heard of since the start is UNREACHABLE; no event tells that."""
+otherwise. A node that was not yet heard of since the start is UNREACHABLE, and parts may have
+DEVIATES because of it; no event tells that, and it leaves nothing to acknowledge."""
 
 _DEVICES = """\
 Each [device](../how-to/spread-a-robot-over-computers.md) of a robot of several computers has these

@@ -55,6 +55,8 @@ class ErrorList:
         self._severities: dict[ErrorKey, Severity] = {}
         """Of those of signals."""
         self._of_signals: dict[PartName | None, list[str]] = {}
+        self._silent: dict[ErrorKey, tuple[ErrorView, Alarm]] = {}
+        """Those that are on without a word, and what there was to see of each before."""
         self._latching: set[ErrorKey] = set()
         """Those that stay on until they are acknowledged; signals keep their own on."""
         self._open: dict[ErrorKey, ErrorView] = {}
@@ -125,8 +127,26 @@ class ErrorList:
         if not was_on:
             self.tell_raised(key, cause)
 
+    def raise_silently(self, key: ErrorKey, found: Found, since: Instant) -> None:
+        """Raise an error that only follows from who was never heard of: that is how a robot begins.
+
+        It is told once it follows from anything else. If it ends before, it leaves no trace, and
+        what an earlier run left to be seen of it stays as it was. One that is on is noted only.
+
+        Args:
+            key: The error.
+            found: What was found.
+            since: When it was raised.
+        """
+        if not self.is_on(key):
+            self.note(key, NORMAL, 0)  # It may be pending.
+            self._silent[key] = self.view(key), self._alarms[key]
+            self._alarms.take_as_start(key)
+        self.note(key, found, since)
+
     def tell_raised(self, key: ErrorKey, cause: int | None = None) -> None:
         """Tell that an error of a part is on."""
+        self._silent.pop(key, None)
         self._alarms.note_told(key)
         view = self._open[key]
         raised = ErrorRaised(
@@ -148,6 +168,9 @@ class ErrorList:
             key: The error.
             cause: Id of the event that led to it; None: the current input.
         """
+        if key in self._silent:
+            self.forget(key)
+            return
         before = self.view(key)
         self.note(key, NORMAL, 0)
         if before.state.is_on and not self.is_on(key):
@@ -178,13 +201,19 @@ class ErrorList:
 
     def forget(self, key: ErrorKey) -> None:
         """Forget an error that is on since the start, as if it had never been raised."""
+        before, alarm = self._silent.pop(key, (None, QUIET))
         if not self._alarms.is_from_start(key):
             # An earlier run raised it, and nobody saw that.
             self.note(key, NORMAL, 0)
             return
+        is_seen = not self._alarms[key].unseen
         self._alarms.discard(key)
         marks = self._open.pop(key).marks
-        self._put(replace(self.view(key), marks=marks))
+        if before is None or (alarm.unseen and is_seen):
+            before, alarm = self.view(key), QUIET
+        after = replace(before, marks=marks, first_out=False)
+        self._put(after)
+        self._alarms.put(after, alarm)
         self._switch(key, on=False)
         if key == self._first:
             self._mark_first(self.on.oldest)
@@ -215,15 +244,11 @@ class ErrorList:
         if (causes, roots) == (view.caused_by, view.roots):
             return False
         self._put(replace(view, caused_by=causes, roots=roots))
-        if key not in self._latching:
+        if not self._is_kept_as_such(key):
             self._alarms.keep_no_longer(key)
         if key in self.on.contenders and self._first in self.on.contenders:
             self._note_rank(key)
         return True
-
-    def take_as_start(self, key: ErrorKey) -> None:
-        """Take an error that is about to be raised as how the robot begins, until it is told."""
-        self._alarms.take_as_start(key)
 
     def mark_start(self) -> None:
         """Take what is on now as how each robot begins: its end leaves nothing to see."""
@@ -287,6 +312,10 @@ class ErrorList:
         """Tell whether an error is on."""
         view = self._open.get(key)
         return view is not None and view.state.is_on
+
+    def is_silent(self, key: ErrorKey) -> bool:
+        """Tell whether an error is on without a word."""
+        return key in self._silent
 
     def is_of_signal(self, key: ErrorKey) -> bool:
         """Tell whether a signal raises an error; what the model says of it only explains it."""
@@ -362,8 +391,10 @@ class ErrorList:
             began = after.raised
         elif known.state is ErrorState.PENDING:
             began = known.since
-        if after.unseen and (found.lingers or not found.message):
-            # What nobody has seen stays readable: what was measured, and not that it is over.
+        is_less = found.lingers or not found.message or found.state is ErrorState.PENDING
+        if after.unseen and is_less:
+            # What nobody has seen stays readable: what was measured, and not that it is over, or
+            # that it may come again.
             found = Found(found.state, known.message, known.value, known.threshold)
         raised = state.is_on and not was_on
         # What returned is still shown under its root.
@@ -385,10 +416,17 @@ class ErrorList:
             self._turns.append(Turn(view.key, raised, self._outbox.now, before.ended))
             self._switch(view.key, on=raised)
         view = self.view(view.key)
-        is_announced = view.is_root or view.key in self._latching
+        is_announced = view.is_root or self._is_kept_as_such(view.key)
         too_many = self._alarms.put(view, after, is_announced=is_announced)
         if too_many is not None:
             self._see(too_many)
+
+    def _is_kept_as_such(self, key: ErrorKey) -> bool:
+        """Tell whether it is kept that nobody saw an error, though it follows from others.
+
+        What is on without a word is kept as an earlier run left it.
+        """
+        return key in self._latching or key in self._silent
 
     def _is_seen_with_roots(self, view: ErrorView) -> bool:
         """Tell whether an error follows from others that somebody has seen, all of them."""

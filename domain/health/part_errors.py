@@ -60,7 +60,8 @@ class PartErrors(Concern):
     """Raises and clears the built-in errors; one of a part never raises one of another part.
 
     A node is UNREACHABLE until it is first heard of. That is neither told as raised nor as cleared:
-    it is how each node of each robot begins.
+    it is how each node of each robot begins. That a part deviates because of such a node is how the
+    robot begins too: once the node is heard, whether the part deviates is judged anew.
     """
 
     def __init__(self, parts: Parts, errors: ErrorList, outbox: Outbox, start: Instant) -> None:
@@ -80,6 +81,8 @@ class PartErrors(Concern):
         """Whether those are in the order of the file."""
         self._deviating: dict[PartName, _Origin] = {}
         """Parts that deviate with no change under way, and what began it."""
+        self._from_start: set[PartName] = set()
+        """Those of them that are not told, since a node below them was only now or never heard."""
         self._deadlines: SharedDeadlines[PartName] = SharedDeadlines()
         self._due: dict[PartName, Instant] = {}
         """Parts whose time is up, and when it was; later turns raise their errors."""
@@ -293,12 +296,24 @@ class PartErrors(Concern):
         if facts.reachable and node in self._unheard:
             self._unheard.discard(node)
             self._errors.forget(ErrorKey(node, UNREACHABLE))
+            self._judge_anew(node, since)
         elif node not in self._unheard:
             words = "" if facts.reachable else f"{node} is unreachable"
             self._set(node, UNREACHABLE, words, since)
         is_bad = facts.known_state is LifecycleState.ERROR_PROCESSING
         self._set(node, ERROR_PROCESSING, f"{node} is in errorprocessing" if is_bad else "", since)
         self._look_at_drift(node, facts, since)
+
+    def _judge_anew(self, node: PartName, since: Instant) -> None:
+        """Give the systems above a node that is heard for the first time a second from now.
+
+        Its state may be known only a moment later. What was told before is not taken back.
+        """
+        above = self._parts.model.ancestors[node]
+        for system in above:
+            if system in self._deviating and not self._is_told(system):
+                self._from_start.add(system)
+            self._look_at_deviation(system, since)
 
     def _look_at_drift(self, node: PartName, facts: NodeFacts, since: Instant) -> None:
         drift = None
@@ -313,23 +328,49 @@ class PartErrors(Concern):
             self._clear(node, PARAMETERS_DRIFTED)
 
     def _look_at_deviation(self, part: PartName, since: Instant) -> None:
-        """Judge whether a part deviates, and those above it, which may do so because of it."""
-        if not self._deviates(part):
-            if part not in self._deviating:
-                return
-            del self._deviating[part]
-            self._due.pop(part, None)
-            self._deadlines.clear(part)
-            self._clear(part, DEVIATES)
-        elif part not in self._deviating:
-            event, actor = self._outbox.record_input(), self._outbox.actor
-            self._deviating[part] = _Origin(event, actor, since)
-            self._deadlines.set(part, since + DEVIATES_AFTER)
-            self._note(part, DEVIATES, self._deviation(part, ErrorState.PENDING), since)
-        else:
+        """Judge whether a part deviates, and those above it, which may do so because of it.
+
+        Once what it waited for is heard, it begins anew: so long it was only how the robot begins.
+        """
+        deviated, deviates = part in self._deviating, self._deviates(part)
+        is_told = self._is_told(part)
+        waits = deviates and not is_told and self._waits_for_node(part)
+        begins_anew = part in self._from_start and not (waits or is_told)
+        (self._from_start.add if waits else self._from_start.discard)(part)
+        if deviated is deviates and not begins_anew:
             return
+        if deviated:
+            self._end_deviation(part)
+        if deviates:
+            self._begin_deviation(part, since)
         for system in self._parts.model.ancestors[part]:
             self._look_at_deviation(system, since)
+
+    def _begin_deviation(self, part: PartName, since: Instant) -> None:
+        """Let DEVIATES of a part be pending."""
+        event, actor = self._outbox.record_input(), self._outbox.actor
+        self._deviating[part] = _Origin(event, actor, since)
+        self._deadlines.set(part, since + DEVIATES_AFTER)
+        self._note(part, DEVIATES, self._deviation(part, ErrorState.PENDING), since)
+
+    def _end_deviation(self, part: PartName) -> None:
+        """Clear DEVIATES of a part, whatever has become of it."""
+        del self._deviating[part]
+        self._due.pop(part, None)
+        self._deadlines.clear(part)
+        self._clear(part, DEVIATES)
+
+    def _waits_for_node(self, part: PartName) -> bool:
+        """Tell whether a part deviates because of a node that was never heard of.
+
+        A node that was just heard may still have to be looked at.
+        """
+        cause = self._parts.inference.deviation_cause(part)
+        return cause in self._unheard and not self._is_reachable(cause)
+
+    def _is_told(self, part: PartName) -> bool:
+        key = ErrorKey(part, DEVIATES)
+        return self._errors.is_on(key) and not self._errors.is_silent(key)
 
     def _deviates(self, part: PartName) -> bool:
         """Tell whether a part is not where its target says, and no change works on that."""
@@ -348,7 +389,11 @@ class PartErrors(Concern):
         """Raise DEVIATES of some parts whose time is up."""
         for part in list(islice(self._due, LOOKS_AT_ONCE)):
             since, origin = self._due.pop(part), self._deviating[part]
-            self._raise(part, DEVIATES, self._deviation(part, _ACTIVE), since, origin.event)
+            found = self._deviation(part, _ACTIVE)
+            if part in self._from_start:
+                self._errors.raise_silently(ErrorKey(part, DEVIATES), found, since)
+            else:
+                self._raise(part, DEVIATES, found, since, origin.event)
 
     def _set(self, part: PartName, error: str, words: str, since: Instant) -> None:
         """Raise an error with a message, or clear it if that is empty."""

@@ -65,8 +65,6 @@ class Propagation(Concern):
         """The input that left work for later turns."""
         self._present = set[ErrorKey]()
         """Errors that are declared and whose cause is present."""
-        self._silent = set[ErrorKey]()
-        """Those of them that were not told."""
         self._on_since: dict[ErrorKey, Instant] = {}
         self._pending: dict[ErrorKey, int] = {}
         """Errors that are due unless their cause ends, and the event with which it began."""
@@ -194,7 +192,7 @@ class Propagation(Concern):
     def _detect(self, key: ErrorKey, own: DeclaredError, when: Condition, now: Instant) -> None:
         """Decide about an error with a condition of its own; an unknown one keeps it as it is."""
         truth, since = self._watched.truth(when), self._watched.since(when)
-        if key in self._silent and (truth is not Truth.TRUE or not self._is_unheard(key)):
+        if self._errors.is_silent(key) and (truth is not Truth.TRUE or not self._is_unheard(key)):
             # That a node was not yet heard of begins nothing that stays.
             self._clear(key, None)
         if truth is Truth.TRUE and key not in self._present:
@@ -265,25 +263,18 @@ class Propagation(Concern):
         if self._errors.is_on(key) or not self._are_unheard(self._errors.explanation_of(key)[1]):
             self._errors.raise_(key, found, now, cause)
         else:
-            self._silent.add(key)
-            self._errors.take_as_start(key)
-            self._errors.note(key, found, now)
+            self._errors.raise_silently(key, found, now)
 
     def _clear(self, key: ErrorKey, cause: int | None) -> None:
         self._deadlines.clear(key)
         self._present.discard(key)
-        if key in self._silent:
-            self._silent.discard(key)
-            self._errors.forget(key)
-        else:
-            self._errors.clear(key, cause)
+        self._errors.clear(key, cause)
 
     def _renew_roots(self, key: ErrorKey) -> bool:
         """Find the roots of an error anew; return whether they changed."""
         if not self._errors.renew_roots(key):
             return False
-        if key in self._silent and not self._is_unheard(key):
-            self._silent.discard(key)
+        if self._errors.is_silent(key) and not self._is_unheard(key):
             self._errors.tell_raised(key)
         for effect in self._causes.effects(key, self._errors.is_on):
             self._push(effect)
@@ -291,13 +282,19 @@ class Propagation(Concern):
 
     def _is_unheard(self, key: ErrorKey) -> bool:
         """Tell whether an error goes back to nothing but who was never heard of."""
-        return self._are_unheard(self._errors.view(key).roots or (key,))
+        roots = self._errors.view(key).roots
+        return self._are_unheard(roots) if roots else self._was_never_heard(key)
 
     def _are_unheard(self, roots: Collection[ErrorKey]) -> bool:
-        for part, error in roots:
-            if part is None or part not in self._unheard.get(error, ()):
-                return False
-        return bool(roots)
+        """Tell whether errors go back to nothing else; of a silent one that may yet be looked for.
+
+        Of thousands that are raised in turns, a system may come before what is below it.
+        """
+        is_silent = self._errors.is_silent
+        return bool(roots) and all(self._was_never_heard(r) or is_silent(r) for r in roots)
+
+    def _was_never_heard(self, key: ErrorKey) -> bool:
+        return key.part is not None and key.part in self._unheard.get(key.error, ())
 
     def _is_found_elsewhere(self, key: ErrorKey) -> bool:
         """Tell whether its causes explain an error only: it is built in, or that of a signal."""

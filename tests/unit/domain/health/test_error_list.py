@@ -5,6 +5,7 @@ import pytest
 from domain.events.health import ErrorCleared, ErrorRaised
 from domain.health.error_causes import ErrorCauses
 from domain.health.error_list import NORMAL, ErrorList, Found
+from domain.kept import KeptUnacknowledged
 from domain.outbox import Outbox
 from domain.parts.system_model import NodeModel, SmhModel
 from domain.snapshot import ErrorKey, ErrorState, Severity
@@ -109,6 +110,66 @@ def test_what_is_forgotten_was_never_raised(errors: ErrorList) -> None:
     assert not errors.open_ones()
     errors.note(OFF, on(), 3)
     assert errors.view(OFF).first_out
+
+
+@pytest.fixture
+def outbox() -> Outbox:
+    return Outbox()
+
+
+def told(outbox: Outbox) -> list[str]:
+    return [event.kind for event in outbox.take().events if event.kind.startswith("error.")]
+
+
+def test_what_is_raised_silently_is_on_and_ends_without_a_trace(outbox: Outbox) -> None:
+    errors = ErrorList(outbox)
+    errors.mark_start()
+    errors.note(OFF, on(state=S.PENDING), 1)
+    errors.raise_silently(OFF, on(), 2)
+    assert (errors.is_on(OFF), errors.is_silent(OFF)) == (True, True)
+    errors.clear(OFF)
+    assert (errors.view(OFF).state, errors.view(OFF).count) == (S.NORMAL, 0)
+    assert not errors.open_ones()
+    outputs = outbox.take()
+    assert (outputs.kept, [e for e in outputs.events if e.kind.startswith("error.")]) == ((), [])
+
+
+def test_once_it_is_told_it_ends_as_any_other(outbox: Outbox) -> None:
+    errors = ErrorList(outbox)
+    errors.raise_silently(OFF, on(), 2)
+    errors.tell_raised(OFF)
+    assert not errors.is_silent(OFF)
+    errors.clear(OFF)
+    assert (errors.view(OFF).state, errors.view(OFF).count) == (S.RETURNED, 1)
+    assert told(outbox) == ["error.raised", "error.cleared"]
+
+
+def test_what_is_on_already_is_not_silent_again(outbox: Outbox) -> None:
+    errors = ErrorList(outbox)
+    errors.raise_(OFF, on(), 2)
+    errors.raise_silently(OFF, on("still so"), 3)
+    assert (errors.is_silent(OFF), errors.view(OFF).message) == (False, "still so")
+
+
+def test_what_an_earlier_run_left_stays_to_be_seen_and_kept(outbox: Outbox) -> None:
+    errors = ErrorList(outbox)
+    errors.mark_start()
+    errors.restore(KeptUnacknowledged(OFF.part, OFF.error, "base is slow", 3, 0.2, 0.9), 5)
+    before = errors.view(OFF)
+    errors.note(OFF, on("base is unknown", S.PENDING), 6)
+    errors.raise_silently(OFF, on("base is unknown"), 7)
+    errors.clear(OFF)
+    assert errors.view(OFF) == before
+    assert (before.state, before.message, before.since) == (S.RETURNED, "base is slow", 3)
+    assert outbox.take().kept == ()
+
+
+def test_what_is_pending_does_not_hide_what_nobody_has_seen(errors: ErrorList) -> None:
+    errors.note(OFF, on("base is slow"), 1)
+    errors.note(OFF, NORMAL, 2)
+    errors.note(OFF, on("base is unknown", S.PENDING), 3)
+    errors.note(OFF, NORMAL, 4)
+    assert (errors.view(OFF).state, errors.view(OFF).message) == (S.RETURNED, "base is slow")
 
 
 def test_open_errors_have_the_names_by_which_clients_know_them(errors: ErrorList) -> None:

@@ -7,20 +7,30 @@ from domain.findings import Blocker
 from domain.health.error_list import ErrorList
 from domain.health.part_errors import DEVIATES_AFTER, LOOKS_AT_ONCE, PartErrors
 from domain.inputs import ModeRequest, NodeReport, ParametersRequest, Restored, TimePassed
-from domain.kept import Keeping, KeptChange, KeptFailedChange
+from domain.kept import Keeping, Kept, KeptChange, KeptFailedChange, KeptTarget
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ErrorKey, ErrorState, ErrorView, SystemState
-from domain.state_and_mode import PartName
+from domain.state_and_mode import ModeName, PartName
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import seconds
 from tests.support.big_model import big_model
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
-from tests.support.models import ACTUATION, ARM, BASE, actuation_model, nested_model
+from tests.support.models import (
+    ACTUATION,
+    ARM,
+    BASE,
+    FAST,
+    PERFORMANCE,
+    STRONG,
+    active,
+    actuation_model,
+    nested_model,
+)
 
 S = ErrorState
 
@@ -347,10 +357,16 @@ def test_a_failed_change_is_laid_to_its_end(robot: Robot) -> None:
 # --- over a restart ------------------------------------------------------------------------------
 
 
-def restarted(*kept: KeptFailedChange | KeptChange) -> tuple[Supervision, list[RecordedEvent]]:
+def restarted(*kept: Kept) -> tuple[Supervision, list[RecordedEvent]]:
     core = Supervision(actuation_model(), SupervisionSettings(), seconds(100))
     restored = Restored(boot=2, next_event=50, next_change=9, kept=kept)
     return core, list(core.handle(restored, seconds(100)).events)
+
+
+def there(node: PartName, mode: ModeName) -> NodeReport:
+    """Return a complete report of a node in a mode."""
+    parameters = actuation_model().nodes[node].modes[mode]
+    return NodeReport(node, state=LifecycleState.ACTIVE, parameters=parameters, reachable=True)
 
 
 def test_a_failed_change_survives_a_restart(robot: Robot) -> None:
@@ -402,6 +418,62 @@ def test_after_the_next_success_nothing_is_kept(robot: Robot) -> None:
     for message in robot.robot.advance(robot.now + seconds(5)):
         forgotten += robot.onboard.handle(message, robot.now + seconds(5)).kept
     assert [(k.name, k.value) for k in forgotten if k.kind is KeptFailedChange] == [(BASE, None)]
+
+
+def heard_late(*reports: tuple[float, NodeReport]) -> tuple[Supervision, list[RecordedEvent]]:
+    """Restart a robot in PERFORMANCE, of whose nodes this is reported so long after that."""
+    target = KeptTarget(ACTUATION, active(PERFORMANCE), 1)
+    core, events = restarted(target)
+    for after_s, report in reports:
+        events += core.handle(report, seconds(100 + after_s)).events
+    return core, [event for event in events if is_error_of_part(event)]
+
+
+def is_error_of_part(event: RecordedEvent) -> bool:
+    return event.kind.startswith("error.") and event.data["part"] is not None
+
+
+def open_of_parts(core: Supervision) -> list[str]:
+    return [name for name in core.open_errors() if "." in name]
+
+
+@pytest.mark.parametrize("after_s", [0.9, 1.64, 60])
+def test_that_a_node_was_not_heard_yet_is_no_deviation_that_is_told(after_s: float) -> None:
+    core, told = heard_late(
+        (after_s, there(ARM, STRONG)),
+        (after_s, there(BASE, FAST)),
+    )
+    assert (told, open_of_parts(core)) == ([], [])
+
+
+def test_a_part_deviates_because_of_a_node_that_was_not_heard_yet_without_a_word() -> None:
+    core, told = heard_late((60, there(ARM, STRONG)))
+    assert told == []
+    for part in (BASE, ACTUATION):
+        error = core.error(ErrorKey(part, "DEVIATES"))
+        assert (error.state, error.roots) == (S.ACTIVE, (ErrorKey(BASE, "UNREACHABLE"),))
+
+
+def test_that_a_node_cannot_be_reached_at_the_start_is_not_told_either() -> None:
+    core, told = heard_late(
+        (0, NodeReport(BASE, reachable=False)),
+        (5, there(ARM, STRONG)),
+        (8, there(BASE, FAST)),
+    )
+    assert (told, open_of_parts(core)) == ([], [])
+
+
+def test_once_a_node_is_heard_it_deviates_as_any_other() -> None:
+    core, told = heard_late(
+        (5, there(ARM, STRONG)),
+        (8, NodeReport(BASE, state=LifecycleState.INACTIVE, reachable=True)),
+    )
+    pending = core.error(ErrorKey(BASE, "DEVIATES"))
+    assert (told, pending.state, pending.since) == ([], S.PENDING, seconds(108))
+    events = core.handle(TimePassed(), seconds(109)).events
+    raised = [e.data["part"] for e in events if e.kind == "error.raised"]
+    assert sorted(map(str, raised)) == [ACTUATION, BASE]
+    assert core.error(ErrorKey(ACTUATION, "DEVIATES")).roots == (ErrorKey(BASE, "DEVIATES"),)
 
 
 # --- the robot as a whole ------------------------------------------------------------------------
@@ -528,3 +600,23 @@ def test_who_comes_back_before_its_turn_is_not_told_to_have_deviated() -> None:
     )
     robot.turns(until_s=200)
     assert robot.core.error(ErrorKey(last, "DEVIATES")).count == 0
+
+
+def test_thousands_that_are_heard_late_after_a_restart_leave_nothing() -> None:
+    model = big_model(2_000)
+    core = Supervision(model, SupervisionSettings(), 0)
+    kept = KeptTarget(next(iter(model.systems)), active("FAST"), 1)
+    told = list(core.handle(Restored((kept,), boot=2), 0).events)
+    now = seconds(3)
+    while (due := core.wake_at()) is not None and due <= now:
+        told += core.handle(TimePassed(), now).events
+    assert core.parts_with_errors["DEVIATES"] == len(model.parts)
+    for node in model.nodes:
+        parameters = model.nodes[node].modes[FAST]
+        report = NodeReport(node, state=LifecycleState.ACTIVE, parameters=parameters)
+        told += core.handle(report, now).events
+        now += seconds(0.01)
+    while (due := core.wake_at()) is not None and due <= now + seconds(5):
+        told += core.handle(TimePassed(), max(due, now)).events
+    assert [event for event in told if is_error_of_part(event)] == []
+    assert open_of_parts(core) == []
