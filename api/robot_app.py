@@ -15,6 +15,7 @@ from api.documents.route import openapi_router
 from api.http.access import Access
 from api.http.gate.durable import DurableHeader
 from api.http.gate.faults import UnexpectedErrors
+from api.http.gate.query import QueryGate
 from api.http.gate.refusals import Refusals
 from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.http.metrics import Metrics
@@ -148,7 +149,11 @@ def create_robot_app(
         lifespan=lifespan,
         responses=_A_PROBLEM,
         routes=_resources(),
-        middleware=[Middleware(DurableHeader), Middleware(UnexpectedErrors)],
+        middleware=[
+            Middleware(DurableHeader),
+            Middleware(UnexpectedErrors),
+            Middleware(QueryGate, clock=supervisor.clock),
+        ],
     )
     state = app.state
     state.worker = worker

@@ -25,6 +25,9 @@ _MAX_OBJECTS = 2 * MAX_MEMBERS
 _MAX_MARKS = 10_000
 """Braces and colons in such a body; that of a member may also be in a text."""
 
+INVALID_QUERY = "INVALID_QUERY"
+"""The code of an error in the query, where that of one in the body is `INVALID_BODY`."""
+
 _MAX_MESSAGE = 500
 _CONTAINERS = (dict, list)
 

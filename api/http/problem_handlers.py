@@ -8,13 +8,12 @@ from fastapi.responses import Response
 from starlette.exceptions import HTTPException as StarletteHTTPException
 from starlette.routing import Match
 
-from api.http.body_parsing import BodyTooLargeError, InvalidBodyError, faults_of
+from api.http.body_parsing import INVALID_QUERY, BodyTooLargeError, InvalidBodyError, faults_of
 from api.http.problems import HttpError, make_problem, problem_of, problem_response
 from domain.errors import PilothouseError
 from service.clock import Clock
 from service.worker import WorkerBusyError
 
-_BAD_QUERY = "INVALID_QUERY"
 _METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 _OUTSIDE = frozenset({"body", "query", "path", "header"})
 
@@ -37,7 +36,7 @@ def add_problem_handlers(app: FastAPI, clock: Clock) -> None:
         if not isinstance(error, RequestValidationError):
             raise error
         found = error.errors()
-        code = None if any(fault["loc"][0] == "body" for fault in found) else _BAD_QUERY
+        code = None if any(fault["loc"][0] == "body" for fault in found) else INVALID_QUERY
         invalid = InvalidBodyError(faults_of(found, _OUTSIDE), code, count=len(found))
         return await on_our_error(request, invalid)
 

@@ -56,8 +56,8 @@ class AuditClass(Enum):
     own events when it matters."""
     ALWAYS = auto()
     UNLESS_DRY_RUN = auto()
-    """Not recorded with `?dry_run=true`, since then it changes nothing. Other routes ignore this
-    parameter, so there it cannot hide a request."""
+    """Not recorded with `?dry_run=true`, since then it changes nothing. Other routes do not
+    know this field, so there it cannot hide a request."""
 
 
 _CHANGING = (Permission.OPERATE, Permission.STOP)

@@ -12,7 +12,10 @@ _ONLY_HTTP = {
     "FOREIGN_ORIGIN": (403, "A request from a page of another origin that is not allowed."),
     "HEAD_TOO_LARGE": (431, "A request with too many headers, or too long ones."),
     "HOST_NOT_ALLOWED": (403, "The name in `Host` is not allowed."),
-    "INVALID_QUERY": (422, "A query parameter with an invalid value."),
+    "INVALID_QUERY": (
+        422,
+        "A query field with an invalid value; in a write also an unknown or a repeated one.",
+    ),
     "MALFORMED_REQUEST": (400, "Not a valid HTTP/1.1 request; the connection is closed."),
     "METHOD_NOT_ALLOWED": (405, "`Allow` lists the allowed methods."),
     "NOT_READY": (503, "`/readyz`: no model, or the core does not tick."),

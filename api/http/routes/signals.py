@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Path, Query, Response
 from pydantic import AwareDatetime
 
-from api.http.body_parsing import InvalidBodyError
+from api.http.body_parsing import INVALID_QUERY, InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
 from api.http.list_answers import joined
 from api.http.problems import HttpError
@@ -180,7 +180,7 @@ def _span(
     if begin >= end:
         message = "query from_at: must be before to_at, which is now unless it is given"
         fault = BodyFault(pointer="", code=InvalidValueError.code, message=message)
-        raise InvalidBodyError([fault], "INVALID_QUERY")
+        raise InvalidBodyError([fault], INVALID_QUERY)
     return _within(begin), _within(end)
 
 

@@ -68,6 +68,16 @@ def test_who_waits_for_a_change_is_answered_while_it_is_still_running(
     assert change.part == PartName("drive_base")
 
 
+def test_a_misspelt_field_of_a_query_moves_nothing_here_either(
+    robot: VirtualService, ask: Ask
+) -> None:
+    refused = ask("POST", "/nodes/drive_base/mode?dry-run=true", {"mode": "FAST"})
+
+    assert refused is not None
+    assert (refused.status, refused.code) == (422, "INVALID_QUERY")
+    assert list(robot.supervisor.core.changes()) == []
+
+
 class Refused(NamedTuple):
     method: str
     path: str
