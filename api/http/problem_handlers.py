@@ -6,15 +6,14 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
 from starlette.exceptions import HTTPException as StarletteHTTPException
-from starlette.routing import Match
 
 from api.http.body_parsing import INVALID_QUERY, BodyTooLargeError, InvalidBodyError, faults_of
+from api.http.path_methods import allowed_methods
 from api.http.problems import HttpError, make_problem, problem_of, problem_response
 from domain.errors import PilothouseError
 from service.clock import Clock
 from service.worker import WorkerBusyError
 
-_METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 _OUTSIDE = frozenset({"body", "query", "path", "header"})
 
 
@@ -59,24 +58,8 @@ async def _on_http_error(request: Request, error: Exception) -> Response:
         code, detail = "UNKNOWN_PATH", f"there is nothing at {request.url.path}"
         more = {"hint": "see /openapi.json"}
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:
-        methods = allowed_methods(request.app, request)
+        methods = allowed_methods(request)
         detail = f"{request.method} not allowed; allowed: {', '.join(methods)}"
         headers["Allow"] = ", ".join(methods)
     problem = make_problem(status, code, detail, request.url.path, more=more)
     return problem_response(problem, headers)
-
-
-def allowed_methods(app: FastAPI, request: Request) -> list[str]:
-    """Return the methods of all routes for a path; the framework lists those of the first route.
-
-    A literal path, such as /tasks/preview, does not count as one of /tasks/{task}.
-    """
-    named = app.openapi()["paths"].get(request.url.path)
-    if named is not None:
-        return [method for method in _METHODS if method.lower() in named]
-    scope = request.scope
-    return [
-        method
-        for method in _METHODS
-        if any(route.matches({**scope, "method": method})[0] is Match.FULL for route in app.routes)
-    ]

@@ -22,6 +22,7 @@ from api.http.error_answers import ActiveQuery, answer_errors
 from api.http.list_answers import json_list
 from api.http.longer_names import part_of_longer_name
 from api.http.part_text import part_text
+from api.http.path_methods import require_allowed
 from api.http.request_body import JsonRoute
 from api.http.route_policy import AuditClass, Permission, policy
 from api.http.schemas.base import timestamp
@@ -39,7 +40,7 @@ from api.http.schemas.parts import (
     TransitionBody,
     WhyJson,
 )
-from domain.errors import UnknownModeError
+from domain.errors import UnknownModeError, UnknownPartError
 from domain.inputs import ModeRequest, TransitionRequest
 from domain.lifecycle import PRIMARY_STATES, LifecycleState, Transition
 from domain.timebase import Duration, seconds
@@ -177,6 +178,12 @@ def _wait_for(in_body: float | None, in_query: float | None) -> Duration | None:
 # Last, since its path matches those of all others.
 @router.get("/{part:path}")
 @policy(Permission.OBSERVE)
-async def get_part(part: PartDep, supervisor: SupervisorDep) -> PartJson:
+async def get_part(part: PartPath, supervisor: SupervisorDep, request: Request) -> PartJson:
     """Show one part: its requested target, the target in force, and its actual state and mode."""
-    return PartJson.of(supervisor.core.part(part), supervisor.clock)
+    try:
+        name = known_part(part, request, supervisor)
+    except UnknownPartError:
+        # The path may be that of what cannot be read, such as an error or a checkpoint of a part.
+        require_allowed(request)
+        raise
+    return PartJson.of(supervisor.core.part(name), supervisor.clock)

@@ -28,6 +28,16 @@ async def test_what_is_not_there_is_not_found(path: str, robot: HttpRobot) -> No
         ("DELETE", "/emergency_stop", "GET, PUT"),
         ("GET", "/errors/ESTOP/acknowledge", "POST"),
         ("TRACE", "/system_state", "GET"),
+        ("POST", "/tasks/current", "DELETE, GET"),
+        ("DELETE", "/tasks/preview", "POST"),
+        ("DELETE", "/nodes/drive_base", "GET"),
+        ("GET", "/nodes/drive_base/errors/JAM", "POST"),
+        ("DELETE", "/nodes/drive_base/errors/JAM", "POST"),
+        ("GET", "/systems/actuation/errors/X/shelf", "DELETE, PUT"),
+        ("OPTIONS", "/nodes/drive_base/errors/X/acknowledge", "POST"),
+        ("GET", "/nodes/drive_base/reactions/R", "PATCH"),
+        ("PUT", "/nodes/drive_base/reactions/R/acknowledge", "POST"),
+        ("GET", "/nodes/drive_base/checkpoints/c", "POST"),
     ],
 )
 async def test_what_is_not_done_here_is_told_with_all_that_is(
