@@ -15,6 +15,7 @@ from api.documents.route import openapi_router
 from api.http.access import Access
 from api.http.gate.durable import DurableHeader
 from api.http.gate.faults import UnexpectedErrors
+from api.http.gate.head import HeadAsGet
 from api.http.gate.query import QueryGate
 from api.http.gate.refusals import Refusals
 from api.http.limits import USUAL_LIMITS, ServiceLimits
@@ -149,11 +150,7 @@ def create_robot_app(
         lifespan=lifespan,
         responses=_A_PROBLEM,
         routes=_resources(),
-        middleware=[
-            Middleware(DurableHeader),
-            Middleware(UnexpectedErrors),
-            Middleware(QueryGate, clock=supervisor.clock),
-        ],
+        middleware=_inner_gates(supervisor.clock),
     )
     state = app.state
     state.worker = worker
@@ -168,6 +165,20 @@ def create_robot_app(
     app.include_router(page_routes(lambda: first_frames(state.stream_server)))
     app.openapi = partial(describe, app)  # type: ignore[method-assign]
     return app
+
+
+def _inner_gates(clock: Clock) -> list[Middleware]:
+    """Return what is before the routes of a robot in a simulation as well; the first is outermost.
+
+    Args:
+        clock: Of the robot.
+    """
+    return [
+        Middleware(DurableHeader),
+        Middleware(UnexpectedErrors),
+        Middleware(QueryGate, clock=clock),
+        Middleware(HeadAsGet),
+    ]
 
 
 def show(app: FastAPI, supervisor: Supervisor, clock: Clock | None = None) -> None:

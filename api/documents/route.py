@@ -34,7 +34,7 @@ _HEADERS: Mapping[str, str] = MappingProxyType(
 )
 
 
-@openapi_router.api_route("/openapi.json", methods=["GET", "HEAD"])
+@openapi_router.get("/openapi.json")
 @policy(Permission.READ_PUBLIC)
 async def get_openapi(request: Request) -> Response:
     """Return the description of requests and answers."""

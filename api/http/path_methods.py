@@ -32,7 +32,11 @@ def allowed_methods(request: Request) -> list[str]:
     methods = {
         method for _, literals, found in matching if literals == most for method in found & _SHOWN
     }
-    return sorted(methods | {"GET"} if _names_a_part(request) else methods)
+    if _names_a_part(request):
+        methods.add("GET")
+    if "GET" in methods:
+        methods.add("HEAD")
+    return sorted(methods)
 
 
 def require_allowed(request: Request) -> None:

@@ -22,7 +22,7 @@ async def test_a_part_is_shown_also_where_its_name_is_the_path_of_something_else
         refused = await robot.http.put("/nodes/left/errors/JAM")
         of_another = await robot.http.get("/nodes/left/errors/STUCK")
 
-    assert (refused.status_code, refused.headers["allow"]) == (405, "GET, POST")
+    assert (refused.status_code, refused.headers["allow"]) == (405, "GET, HEAD, POST")
     assert (of_another.status_code, of_another.headers["allow"]) == (405, "POST")
 
 

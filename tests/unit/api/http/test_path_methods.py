@@ -23,20 +23,20 @@ def asked(robot: HttpRobot, path: str, method: str = "GET") -> Request:
 @pytest.mark.parametrize(
     ("path", "methods"),
     [
-        ("/systems", ["GET"]),
-        ("/tasks/current", ["DELETE", "GET"]),
+        ("/systems", ["GET", "HEAD"]),
+        ("/tasks/current", ["DELETE", "GET", "HEAD"]),
         ("/tasks/preview", ["POST"]),
-        ("/tasks/t1", ["GET"]),
-        ("/nodes/drive_base", ["GET"]),
-        ("/nodes/left/arm", ["GET"]),
-        ("/nodes/left/arm/mode", ["GET", "POST"]),
+        ("/tasks/t1", ["GET", "HEAD"]),
+        ("/nodes/drive_base", ["GET", "HEAD"]),
+        ("/nodes/left/arm", ["GET", "HEAD"]),
+        ("/nodes/left/arm/mode", ["GET", "HEAD", "POST"]),
         ("/nodes/left/arm/errors/JAM", ["POST"]),
         ("/systems/actuation/errors/X/shelf", ["DELETE", "PUT"]),
         ("/nodes/drive_base/reactions/R/acknowledge", ["POST"]),
-        ("/signals/battery_level/history", ["GET"]),
+        ("/signals/battery_level/history", ["GET", "HEAD"]),
         ("/nowhere", []),
-        ("/nodes", ["GET"]),
-        ("/", ["GET"]),
+        ("/nodes", ["GET", "HEAD"]),
+        ("/", ["GET", "HEAD"]),
         ("*", []),
         ("", []),
     ],
@@ -49,7 +49,7 @@ async def test_the_routes_count_that_say_most_about_a_path(
 
 async def test_a_part_can_be_read_whatever_else_its_name_may_be() -> None:
     async with http_robot(ROBOT) as robot:
-        assert allowed_methods(asked(robot, "/nodes/base/errors/JAM")) == ["GET", "POST"]
+        assert allowed_methods(asked(robot, "/nodes/base/errors/JAM")) == ["GET", "HEAD", "POST"]
         assert allowed_methods(asked(robot, "/nodes/base/errors/STUCK")) == ["POST"]
         assert allowed_methods(asked(robot, "/systems/base/errors/JAM")) == ["POST"]
 
