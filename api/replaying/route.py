@@ -3,10 +3,11 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request
-from pydantic import AwareDatetime, Field
+from pydantic import Field
 
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Body, rfc3339
+from api.http.schemas.sent_values import SentMoment
 from api.http.schemas.stream import ReplayJson
 from api.replaying.player import MAX_SPEED, MIN_SPEED, Player
 from service.clock import since_epoch, to_datetime
@@ -20,7 +21,7 @@ class ReplayBody(Body):
     speed: float | None = Field(default=None, ge=MIN_SPEED, le=MAX_SPEED)
     paused: bool | None = None
     # A text, in JSON.
-    at: AwareDatetime | None = Field(
+    at: SentMoment | None = Field(
         default=None, strict=False, description="The moment to go on from"
     )
 

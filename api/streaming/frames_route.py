@@ -4,11 +4,11 @@ from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
-from pydantic import AwareDatetime
 
 from api.http.dependencies import SupervisorDep
 from api.http.problems import HttpError
 from api.http.route_policy import Permission, policy
+from api.http.schemas.sent_values import SentMoment
 from api.http.schemas.stream import StateFrame
 from api.streaming.frame_jobs import WantedFrame, frame_of
 from domain.errors import StorageDegradedError
@@ -36,7 +36,7 @@ async def get_frame(
     supervisor: SupervisorDep,
     replayer: ReplayerDep,
     at: Annotated[
-        AwareDatetime,
+        SentMoment,
         Query(description="RFC 3339 with an offset, such as `2026-05-04T12:00:00.250Z`"),
     ],
 ) -> Response:

@@ -5,12 +5,12 @@ from datetime import datetime
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Path, Query, Response
-from pydantic import AwareDatetime
+from fastapi import APIRouter, Body, Depends, Path, Query, Request, Response
 
 from api.http.body_parsing import INVALID_QUERY, InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
 from api.http.list_answers import joined
+from api.http.path_methods import require_allowed
 from api.http.problems import HttpError
 from api.http.route_policy import Permission, policy
 from api.http.routes.system_state import current_system_state
@@ -23,7 +23,7 @@ from api.http.schemas.health import (
 )
 from api.http.schemas.history import HistoryPointJson, SignalHistoryJson
 from api.http.schemas.problem import BodyFault
-from api.http.schemas.sent_values import SentSignalName, SentSignalValue
+from api.http.schemas.sent_values import SentMoment, SentSignalName, SentSignalValue
 from api.http.stop_route import IgnoredDep, StopRoute
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.health.signals import signal_name
@@ -58,9 +58,9 @@ async def get_history(
     signal: SignalPath,
     supervisor: SupervisorDep,
     from_at: Annotated[
-        AwareDatetime | None, Query(description=f"{_MOMENT}one hour before `to_at`")
+        SentMoment | None, Query(description=f"{_MOMENT}one hour before `to_at`")
     ] = None,
-    to_at: Annotated[AwareDatetime | None, Query(description=f"{_MOMENT}now")] = None,
+    to_at: Annotated[SentMoment | None, Query(description=f"{_MOMENT}now")] = None,
     points: Annotated[
         int, Query(ge=2, le=_MAX_POINTS, description="At most so many")
     ] = _DEFAULT_POINTS,
@@ -125,7 +125,17 @@ async def post_readings(
     return _taken(supervisor, ignored)
 
 
-@router.post("/{signal:path}", response_model_exclude_unset=True)
+async def _no_history(request: Request) -> None:
+    """Check that a path is not that of a history, which has the form of a signal's as well."""
+    if request.scope["path"].endswith("/history"):
+        require_allowed(request)
+
+
+@router.post(
+    "/{signal:path}",
+    response_model_exclude_unset=True,
+    dependencies=[Depends(_no_history)],
+)
 @policy(Permission.REPORT)
 async def post_reading(
     signal: SignalPath,

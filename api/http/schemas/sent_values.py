@@ -1,9 +1,10 @@
 """Values that clients can send as more than one type, with one clear message per error."""
 
 import math
+import re
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, PlainValidator, WithJsonSchema
+from pydantic import AfterValidator, AwareDatetime, BeforeValidator, PlainValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from domain.health.signals import signal_name
@@ -78,6 +79,20 @@ def _is_scalar(value: object) -> bool:
     return type(value) in _SCALARS
 
 
+def read_date(value: object) -> object:
+    """Return a moment as it was sent, if it begins with a date.
+
+    Raises:
+        PydanticCustomError: It does not. Seconds since 1970 are not taken: 17 or 1.7e12 are one
+            misplaced factor away from another year.
+    """
+    if isinstance(value, str) and _DATE.match(value):
+        return value
+    raise PydanticCustomError(
+        "invalid_moment", "a moment must be RFC 3339 with an offset, as in 2026-05-04T12:00:00Z"
+    )
+
+
 def split_label(value: object) -> object:
     """Return `active.FAST` as an object with state and mode; other values unchanged."""
     if not isinstance(value, str):
@@ -97,6 +112,11 @@ _PARAMETER_SCALARS: list[dict[str, Any]] = [
     {"type": "number"},
     {"type": "string", "maxLength": MAX_TEXT},
 ]
+
+_DATE = re.compile(r"\d{4}-\d\d-\d\d[Tt ]")
+
+SentMoment = Annotated[AwareDatetime, BeforeValidator(read_date)]
+"""A moment, as in RFC 3339."""
 
 SentSignalName = Annotated[str, AfterValidator(signal_name)]
 """The name of a signal, also with the leading slash of its topic."""

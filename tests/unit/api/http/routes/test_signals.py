@@ -339,6 +339,20 @@ async def test_a_history_may_be_as_long_as_a_calendar(
     assert len(history["items"]) == found
 
 
+async def test_a_history_cannot_be_posted(unmocked: HttpRobot) -> None:
+    answer = await unmocked.http.post("/signals/temperature/history", json={"value": 20})
+
+    assert (answer.status_code, answer.headers["Allow"]) == (405, "GET, HEAD")
+
+
+@pytest.mark.parametrize("at", ["17", "1.7e9", "2026-01-01"])
+async def test_moments_of_a_history_are_no_numbers(unmocked: HttpRobot, at: str) -> None:
+    answer = await unmocked.http.get(f"/signals/temperature/history?from_at={at}")
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "INVALID_QUERY")
+    assert "RFC 3339" in answer.json()["detail"]
+
+
 async def test_a_short_history_has_single_readings(unmocked: HttpRobot) -> None:
     await unmocked.http.post("/signals/temperature", json={"value": 20})
     await unmocked.http.post("/signals/temperature", json={"value": 21})

@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 from api.http.schemas.sent_values import (
     MAX_ITEMS,
     MAX_TEXT,
+    SentMoment,
     SentParameter,
     SentSignalValue,
     read_parameter_value,
@@ -105,3 +106,16 @@ def test_one_fault_is_told_once(adapter: TypeAdapter[object]) -> None:
 )
 def test_a_label_is_split_at_its_first_dot(label: object, pair: object) -> None:
     assert split_label(label) == pair
+
+
+@pytest.mark.parametrize("sent", ["2026-05-04T12:00:00Z", "2026-05-04 14:00:00.25+02:00"])
+def test_a_moment_has_a_date_and_an_offset(sent: str) -> None:
+    found = TypeAdapter(SentMoment).validate_python(sent)
+
+    assert (found.year, found.utcoffset() is not None) == (2026, True)
+
+
+@pytest.mark.parametrize("sent", ["17", "0.5", 17, 1.7e9, "2026-05-04T12:00:00", "now", ""])
+def test_seconds_since_1970_are_no_moment(sent: object) -> None:
+    with pytest.raises(ValidationError):
+        TypeAdapter(SentMoment).validate_python(sent)
