@@ -49,6 +49,8 @@ def test_a_cut_off_device_is_lost_in_time_does_what_it_is_to_and_is_adopted(robo
     supervisor, base = robot.supervisor, robot.base
     before, before_base = robot.newest(supervisor), robot.newest(base)
 
+    # On a busy machine the commands that cut it take some time: it may be cut before they end.
+    begin = time.monotonic()
     robot.network.cut("supervisor", "base")
     cut_at = time.monotonic()
     late_s = until(lambda: robot.states()["base"] != "connected")
@@ -61,7 +63,8 @@ def test_a_cut_off_device_is_lost_in_time_does_what_it_is_to_and_is_adopted(robo
     print(f"late {late_s:.2f} s, lost {lost_s:.2f} s, inactive {alone_s:.2f} s after the cut")
     assert late_s < LATE_WITHIN_S + SEEN_S
     assert lost_s < LOST_WITHIN_S + SEEN_S
-    assert OFFLINE_AFTER_S - SEEN_S < alone_s < OFFLINE_AFTER_S + 1.0
+    assert alone_s + (cut_at - begin) > OFFLINE_AFTER_S - SEEN_S
+    assert alone_s < OFFLINE_AFTER_S + 1.0
     assert (system["actual"]["state"], system["reachable"]) == ("unknown", False)
     assert "device base" in system["actual"]["reason"]
     assert robot.states()["arm"] == "connected"
