@@ -26,11 +26,12 @@ from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
 
-PING_EVERY = seconds(0.7)
+PING_EVERY = seconds(1.1)
+"""A client that has not answered a ping when the next one is due is slow."""
 ANSWER_WITHIN = seconds(0.5)
-"""A client whose answer to a ping takes longer is slow. It must be seen soon: a library that has
-taken some messages reads no more until most of them are used, and then all that has come meanwhile,
-so that its answers come ever later."""
+"""So are a few whose answer takes longer. It must be seen soon: a library that has taken some
+messages reads no more until most of them are used, and then all that has come meanwhile, so that
+its answers come ever later."""
 _ON_TIME = seconds(0.2)
 """If we are later than that, answers may wait for us."""
 _CLIENTS_AT_ONCE = 100
@@ -185,9 +186,10 @@ class FanOut:
                     group.part_from_late()
         if now < self._ping_at:
             return b""
+        is_on_time = now - self._ping_at < _ON_TIME
         self._ping_at, self._answers_due = now + PING_EVERY, now + ANSWER_WITHIN
         for group in self._groups.values():
-            group.ask_all()
+            group.ask_all(judged=is_on_time)
             if not self._aged:
                 self._aged += group.due_for_complete(now)
         return PING

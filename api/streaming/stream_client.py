@@ -18,6 +18,9 @@ _COMPLETE_BYTES_PER_S = 1_000
 _KEEPS_UP_FOR = seconds(10)
 """A slow client that skipped nothing for so long keeps up: it may be us who were slow."""
 
+_FEW, _SHARE = 5, 20
+"""So many clients, or a twentieth of all, may be late at once by their own fault."""
+
 _IN_FLIGHT_BYTES = 4_096
 """What a slow client may have to read yet when the next frame is written to it. More would only
 grow old in the kernel, which takes 100 kB and more before it says that a client does not read."""
@@ -69,23 +72,39 @@ class Group:
         if has_all and has_taken and self.apart.pop(client.transport, None) is not None:
             self.in_step[client.transport] = client
 
-    def ask_all(self) -> None:
+    def ask_all(self, *, judged: bool) -> None:
         """Let clients owe an answer to the ping that is sent next.
 
         Slow ones have pings of their own. Those with waiting data may not receive this one in time;
         see `StreamClient.is_stuck`.
+
+        Args:
+            judged: Whether those who still owe one are slow.
         """
-        for client in self.clients:
-            if not (client.is_slow or client.transport.get_write_buffer_size()):
-                client.owes_answer = True
+        for client in self._asked():
+            if judged and client.owes_answer:
+                self._slow_down(client)
+            client.owes_answer = True
 
     def part_from_late(self) -> None:
-        """Let those who still owe an answer continue alone, as slow ones."""
-        for client in self.clients:
-            is_late = client.owes_answer and not client.is_slow
-            if is_late and not client.transport.get_write_buffer_size():
-                client.begin_to_be_slow()
-                self.part_from(client)
+        """Let those who still owe an answer continue alone, as slow ones, if they are few.
+
+        If they are many, this machine is busy, or the network: they have until the next ping then,
+        and go on to cost little meanwhile.
+        """
+        late = [client for client in self._asked() if client.owes_answer]
+        slow = sum(client.is_slow for client in self.apart.values())
+        if slow + len(late) <= max(_FEW, len(self.clients) // _SHARE):
+            for client in late:
+                self._slow_down(client)
+
+    def _asked(self) -> list["StreamClient"]:
+        """Return those that the pings of all reach."""
+        return [c for c in self.clients if not (c.is_slow or c.transport.get_write_buffer_size())]
+
+    def _slow_down(self, client: "StreamClient") -> None:
+        client.begin_to_be_slow()
+        self.part_from(client)
 
     def due_for_complete(self, now: Instant) -> list["StreamClient"]:
         """Return the clients whose last complete frame is too long ago."""

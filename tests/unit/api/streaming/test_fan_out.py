@@ -199,7 +199,7 @@ async def test_after_a_pause_of_the_service_nobody_is_slow_whose_answer_waits_fo
     with fan_out.serve(wire.connection, STATE, "page") as client:
         await clock.advance(1.0)
         wire.answers = False
-        await clock.advance(0.45)
+        await clock.advance(0.15)
         assert client.owes_answer
         clock.stall(2.0)
         await clock.advance(0.1)

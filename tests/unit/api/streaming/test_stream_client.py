@@ -123,21 +123,38 @@ def test_a_client_that_is_lost_is_forgotten_and_comes_back_by_nothing(
 def test_who_still_owes_an_answer_when_it_is_due_is_slow(
     group: Group, client: StreamClient
 ) -> None:
-    group.ask_all()
+    group.ask_all(judged=True)
     client.answered()
     group.part_from_late()
     assert not client.is_slow
 
-    group.ask_all()
+    group.ask_all(judged=True)
     group.part_from_late()
     assert client.is_slow
     assert list(group.apart.values()) == [client]
 
 
+def test_many_who_are_late_at_once_are_slow_only_if_they_miss_the_next_ping(
+    group: Group, client: StreamClient, clock: ManualClock
+) -> None:
+    many = [
+        StreamClient(group, Wire(), client.cursor.copy(), f"page {n}", clock) for n in range(10)
+    ]
+    for one in many:
+        group.add(one)
+
+    group.ask_all(judged=True)
+    group.part_from_late()
+    assert not any(one.is_slow for one in many)
+
+    group.ask_all(judged=True)
+    assert all(one.is_slow for one in many)
+
+
 def test_to_whom_something_waits_the_ping_may_not_have_come(
     group: Group, client: StreamClient
 ) -> None:
-    group.ask_all()
+    group.ask_all(judged=True)
     wire_of(client).waiting = 10
 
     group.part_from_late()
@@ -147,7 +164,7 @@ def test_to_whom_something_waits_the_ping_may_not_have_come(
 def test_a_slow_client_is_written_to_when_it_has_answered(
     group: Group, client: StreamClient, clock: ManualClock
 ) -> None:
-    group.ask_all()
+    group.ask_all(judged=True)
     group.part_from_late()
     assert not client.is_ready(clock.now())
 
@@ -159,7 +176,7 @@ def test_a_slow_client_that_skips_nothing_for_a_while_is_written_to_with_the_oth
     group: Group, client: StreamClient, clock: ManualClock
 ) -> None:
     """As after a pause of the whole service, in which nobody could answer in time."""
-    group.ask_all()
+    group.ask_all(judged=True)
     group.part_from_late()
     client.note_asked(skipped=3)
     client.answered()
