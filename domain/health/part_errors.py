@@ -366,7 +366,7 @@ class PartErrors(Concern):
         A node that was just heard may still have to be looked at.
         """
         cause = self._parts.inference.deviation_cause(part)
-        return cause in self._unheard and not self._is_reachable(cause)
+        return cause is not None and cause in self._unheard and not self._is_reachable(cause)
 
     def _is_told(self, part: PartName) -> bool:
         key = ErrorKey(part, DEVIATES)
