@@ -71,9 +71,9 @@ class Devices(Concern):
         self._stop_seen = stop.view()
         self._outbox = outbox
         self._views = {name: _never_seen(each, start) for name, each in devices.items()}
-        self._unheard = set(devices)
         self.owned_facts = OwnedFacts(devices.values(), parts.model, errors)
         """What only devices may say; read only."""
+        self._unheard = set(devices)
         """Devices that were not connected since the start."""
         self._waits_until = start + heard_within
         self._awaited = set(devices)

@@ -12,7 +12,7 @@ from domain.devices.settings import DeviceSettings
 from domain.errors import ActsElsewhereError
 from domain.health.error_list import ErrorList
 from domain.health.signals import ESTOP_SIGNAL, asks_for_stop
-from domain.inputs import ErrorReport, Input, Readings
+from domain.inputs import ErrorReport, Input, Reading, Readings
 from domain.parts.system_model import SmhModel
 from domain.snapshot import ErrorKey
 from domain.state_and_mode import PartName
@@ -48,8 +48,7 @@ class OwnedFacts:
             case Readings():
                 for item in given.items:
                     reader = self._readers.get(item.signal)
-                    is_stop = item.signal == ESTOP_SIGNAL and asks_for_stop(item.value)
-                    if reader is not None and not is_stop:
+                    if reader is not None and not _is_stop(item):
                         raise ActsElsewhereError.of_signal(item.signal, reader)
             case ErrorReport(part=part, error=error) if part is not None and part in self._model:
                 key = ErrorKey(part, error)
@@ -63,6 +62,10 @@ class OwnedFacts:
         """Return the device that all of a part is on; None: it is the supervisor's."""
         owners = (each.name for each in self._devices if is_own(part, each.nodes, self._model))
         return next(owners, None)
+
+
+def _is_stop(item: Reading) -> bool:
+    return item.signal == ESTOP_SIGNAL and asks_for_stop(item.value)
 
 
 def is_own(part: PartName, nodes: Collection[PartName], model: SmhModel) -> bool:
