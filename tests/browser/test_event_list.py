@@ -30,6 +30,17 @@ def words(page: Page) -> list[str]:
     return events(page).locator(".event-words").all_inner_texts()
 
 
+def open_log_of_earlier_runs(page: Page) -> None:
+    """Open the log, and go back to the first of the earlier runs."""
+    tell_earlier_runs(page)
+    open_log(page)
+    expect(events(page)).to_contain_text(f"thing {LAST} happened")
+    for _ in range(3):
+        count = events(page).locator("li").count()
+        earlier(page).click()
+        expect(events(page).locator("li")).not_to_have_count(count)
+
+
 def test_earlier_events_are_loaded_over_restarts_up_to_the_first(
     desktop: Page, complaints: Complaints
 ) -> None:
@@ -53,13 +64,7 @@ def test_earlier_events_are_loaded_over_restarts_up_to_the_first(
 
 
 def test_events_of_another_day_have_their_day_above_them(desktop: Page) -> None:
-    tell_earlier_runs(desktop)
-    open_log(desktop)
-    expect(events(desktop)).to_contain_text(f"thing {LAST} happened")
-    for _ in range(3):
-        count = events(desktop).locator("li").count()
-        earlier(desktop).click()
-        expect(events(desktop).locator("li")).not_to_have_count(count)
+    open_log_of_earlier_runs(desktop)
     days = events(desktop).locator("li.day")
     expect(days).to_have_text(["2026-03-03", "2026-03-02", "2026-03-01"])
     below = days.last.evaluate("(day) => day.nextElementSibling.textContent")
@@ -67,13 +72,7 @@ def test_events_of_another_day_have_their_day_above_them(desktop: Page) -> None:
 
 
 def test_a_line_tells_of_each_restart_and_of_what_may_be_missing(desktop: Page) -> None:
-    tell_earlier_runs(desktop)
-    open_log(desktop)
-    expect(events(desktop)).to_contain_text(f"thing {LAST} happened")
-    for _ in range(3):
-        count = events(desktop).locator("li").count()
-        earlier(desktop).click()
-        expect(events(desktop).locator("li")).not_to_have_count(count)
+    open_log_of_earlier_runs(desktop)
 
     restarts = events(desktop).locator(".restart")
     expect(restarts.nth(0)).to_have_text(re.compile(r"^Restarted at \d\d:\d\d:01 on 2026-03-03$"))
