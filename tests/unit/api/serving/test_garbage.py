@@ -2,12 +2,18 @@
 
 import asyncio
 import gc
+import os
+import platform
 import weakref
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from api.serving.garbage import Heap
+
+BLOCKS, BLOCK_BYTES = 20_000, 2_000
+"""Together 40 MB, of blocks that are too small to be given back one by one."""
 
 
 class Thing:
@@ -155,3 +161,21 @@ def test_python_collects_itself_where_no_tick_comes(begun: list[int]) -> None:
 
     assert begun
     assert len(things) == 120_000
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other C libraries cannot do this")
+def test_memory_that_starting_no_longer_uses_goes_back_to_the_system(heap: Heap) -> None:
+    blocks = [bytes(BLOCK_BYTES) for _ in range(BLOCKS)]
+    above_them = bytes(BLOCK_BYTES)
+    del blocks
+    before = resident_bytes()
+
+    gc.callbacks.remove(heap.follow)
+    heap.settle()
+
+    assert before - resident_bytes() > 0.8 * BLOCKS * len(above_them)
+
+
+def resident_bytes() -> int:
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
