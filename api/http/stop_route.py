@@ -25,6 +25,8 @@ from domain.errors import InvalidValueError, PilothouseError
 from domain.health.signals import ESTOP_SIGNAL
 from service.refused_readings import RefusedReadings
 
+QUERY_FAULT = "pilothouse.query_fault"
+"""Key of the scope: the error for which a request is rejected that asks for no stop."""
 _IGNORED = "pilothouse.ignored"
 _OUTSIDE = frozenset({"body", "query", "path", "header"})
 
@@ -48,6 +50,8 @@ class StopRoute(JsonRoute):
             limit, raw = limits_of(request).json_bytes, b""
             try:
                 raw = await read_limited(request.stream(), limit)
+                if QUERY_FAULT in request.scope:
+                    raise request.scope.pop(QUERY_FAULT)
                 return await handle(JsonRequest.parse(request, raw))
             except (PilothouseError, RequestValidationError) as error:
                 cut = error.start if isinstance(error, BodyTooLargeError) else None

@@ -89,7 +89,7 @@ async def test_what_reads_is_answered_as_before(path: str, robot: HttpRobot) -> 
         ("DELETE", "/tasks/current?dry_run=true", None),
     ],
 )
-async def test_what_may_stop_the_robot_is_not_refused_for_its_query(
+async def test_what_stops_the_robot_is_not_refused_for_its_query(
     method: str, path: str, body: object, robot: HttpRobot
 ) -> None:
     answer = await robot.http.request(method, path, json=body)
@@ -97,8 +97,47 @@ async def test_what_may_stop_the_robot_is_not_refused_for_its_query(
     assert answer.is_success, answer.text
 
 
+async def test_a_stop_is_told_which_field_of_its_query_was_ignored(robot: HttpRobot) -> None:
+    answer = await robot.http.put("/emergency_stop?dry_run=true", json={"engaged": True})
+
+    assert answer.json()["engaged"]
+    assert [fault["message"] for fault in answer.json()["ignored"]] == [
+        "query dry_run: there is no such field"
+    ]
+
+
+async def test_a_release_that_was_only_to_be_planned_releases_nothing(robot: HttpRobot) -> None:
+    await robot.http.put("/emergency_stop", json={"engaged": True})
+
+    answer = await robot.http.put("/emergency_stop?dry_run=true", json={"engaged": False})
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "INVALID_QUERY")
+    assert (await robot.get("/emergency_stop"))["engaged"]
+
+
 @pytest.mark.parametrize(
-    ("method", "path", "status"), [("POST", "/nowhere?x=1", 404), ("PUT", "/systems?x=1", 405)]
+    ("method", "path", "body"),
+    [
+        ("POST", "/signals/estop?source=a", {"value": False}),
+        ("POST", "/signals/battery?x=1", {"value": 80}),
+        ("PATCH", "/mock/estop?x", {"value": False}),
+    ],
+)
+async def test_a_reading_that_stops_nothing_is_refused_for_its_query(
+    method: str, path: str, body: object, robot: HttpRobot
+) -> None:
+    answer = await robot.http.request(method, path, json=body)
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "INVALID_QUERY")
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status"),
+    [
+        ("POST", "/nowhere?x=1", 404),
+        ("PUT", "/systems?x=1", 405),
+        ("POST", "/signals/battery/history?x=1", 405),
+    ],
 )
 async def test_what_is_no_write_is_told_first(
     method: str, path: str, status: int, robot: HttpRobot
