@@ -1,13 +1,15 @@
 """Answers to requests for a change: its plan, an immediate answer, or one at its end."""
 
-import asyncio
+from contextlib import suppress
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated, Any
 
 from fastapi import Depends, Query, Request, Response
+from starlette.requests import ClientDisconnect
 
 from api.http.change_text import change_text, with_steps
+from api.http.client_presence import while_connected
 from api.http.kept_requests import KeptRequests
 from api.http.schemas.base import seconds_or_none
 from api.http.schemas.changes import ChangeJson, PlanJson, shown_request
@@ -104,20 +106,9 @@ async def _ended(
     supervisor: Supervisor, change: ChangeId, wait_s: float, request: Request
 ) -> ChangeView:
     """Return a change when it has ended, the wait times out, or the client disconnects."""
-    ended = asyncio.create_task(supervisor.change_ends.wait(change, wait_s), name="change ended")
-    gone = asyncio.create_task(_disconnected(request), name="client gone")
-    try:
-        await asyncio.wait({ended, gone}, return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        ended.cancel()
-        gone.cancel()
-        await asyncio.gather(ended, gone, return_exceptions=True)
+    with suppress(ClientDisconnect):
+        await while_connected(request, supervisor.change_ends.wait(change, wait_s))
     return supervisor.core.change(change)
-
-
-async def _disconnected(request: Request) -> None:
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
 
 
 def _answer(status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> Response:

@@ -6,6 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Request, Response
 from starlette.datastructures import State
 
+from api.http.client_presence import while_connected
 from api.http.dependencies import SupervisorDep
 from api.http.request_body import limits_of, read_body
 from api.http.route_policy import Permission, policy
@@ -59,7 +60,9 @@ async def simulate(
     raw = await read_body(request, limits_of(request).model_bytes)
     live = await _copy(request.app.state, supervisor) if b'"live"' in raw else None
     why_not = IS_REAL if supervisor.link is None else HAS_DEVICES
-    content = await simulator.call(simulate_posted, raw, supervisor.model_text, live, why_not)
+    work = simulator.call(simulate_posted, raw, supervisor.model_text, live, why_not)
+    # Others wait for the worker: it must not go on for somebody who has gone.
+    content = await while_connected(request, work)
     return Response(content, media_type="application/json")
 
 

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
+from api.http.client_presence import while_connected
 from api.http.dependencies import SupervisorDep
 from api.http.problems import HttpError
 from api.http.route_policy import Permission, policy
@@ -33,6 +34,7 @@ ReplayerDep = Annotated[Jobs, Depends(_replayer)]
 @router.get("/frames", response_model=StateFrame)
 @policy(Permission.OBSERVE)
 async def get_frame(
+    request: Request,
     supervisor: SupervisorDep,
     replayer: ReplayerDep,
     at: Annotated[
@@ -52,7 +54,7 @@ async def get_frame(
     fault = await _unwritten(supervisor)
     wanted = WantedFrame(folder, at, None if fault else now, supervisor.simulated)
     try:
-        content = await replayer.call(frame_of, wanted)
+        content = await while_connected(request, replayer.call(frame_of, wanted))
     except MomentNotRecordedError:
         started_at = supervisor.clock.wall_time(supervisor.started_at)
         if fault is not None and started_at <= at <= now:

@@ -33,7 +33,7 @@ class UnexpectedErrors:
         try:
             await self._app(scope, receive, send_and_note)
         except ClientDisconnect:
-            log.info("%s went before its request was complete", address_of(scope))
+            log.info("%s went before it was answered", address_of(scope))
         except Exception:
             log.exception("%s %s failed", scope["method"], scope["path"])
             if has_begun:
