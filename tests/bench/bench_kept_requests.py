@@ -24,6 +24,9 @@ PER_S = 300
 SECONDS = 20.0
 ALONE = 300
 """Requests over one connection, with nobody else."""
+RATIO = 1.5
+"""Of the slowest percent in a folder to that in memory, at most."""
+MISSED = ", which is more than required: see decision 38."
 SYNCED_BYTES = 4_096
 READY_TRIES = 500
 KINDS = {"PUT": "hold.set", "DELETE": "hold.released", "task": "task.requested"}
@@ -48,6 +51,7 @@ async def test_what_keeping_costs_those_who_ask(tmp_path: Path) -> None:
     in_memory = await _ask_all(":memory:", tmp_path)
     on_disk = await _ask_all(str(folder), tmp_path)
     lost = _lost(folder, on_disk)
+    ratio = quantiles(on_disk.took)["p99_ms"] / quantiles(in_memory.took)["p99_ms"]
     rows = {
         f"{CONNECTIONS} connections, in memory": _row(in_memory),
         f"{CONNECTIONS} connections, in a folder": {**_row(on_disk), "lost": lost},
@@ -67,8 +71,9 @@ async def test_what_keeping_costs_those_who_ask(tmp_path: Path) -> None:
         "over one connection, each beside a bare fsync in the same folder. A hold is set first and "
         "then stored; a release is announced on disk, carried out, and stored.",
         rows,
-        asked="p99 in a folder at most 1.5 times that in memory, none lost; one alone: p99 of "
-        "setting a hold at most 5 ms more than a bare fsync.",
+        asked=f"p99 in a folder at most {RATIO:g} times that in memory, none lost; one alone: p99 "
+        "of setting a hold at most 5 ms more than a bare fsync.",
+        notes=[f"The ratio is {ratio:.1f}{MISSED if ratio > RATIO else '.'}"],
     )
     assert lost == 0
 

@@ -34,6 +34,8 @@ STARTS = 7
 READY_WITHIN_S = 20.0
 SETTLE_S = 5.0
 REST_S = 20.0
+RSS_MB = 95.0
+MORE = "The RSS is more than required: Python with FastAPI, uvicorn and numpy alone takes 60 MB."
 ROBOT = "actuation"
 """Name of the example robot."""
 
@@ -83,7 +85,8 @@ def test_what_a_service_costs_that_writes_everything_down(tmp_path: Path) -> Non
         f"CPU over {REST_S:g} s, as the share of a core, and memory of `pilothouse serve` with the "
         "example robot and a folder, without a client; and how fast its logs grow.",
         {"nobody looks": row},
-        asked="at most 95 MB RSS and 5 % of a core.",
+        asked=f"at most {RSS_MB:g} MB RSS and 5 % of a core.",
+        notes=[MORE] if row["RSS_mb"] > RSS_MB else [],
     )
 
 
