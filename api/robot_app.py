@@ -22,6 +22,7 @@ from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.http.metrics import Metrics
 from api.http.page.routes import page_routes
 from api.http.problem_handlers import add_problem_handlers
+from api.http.route_table import RouteTable
 from api.http.routes import (
     analysis,
     announcing,
@@ -113,7 +114,7 @@ def _resources() -> list[BaseRoute]:
         )
         for resource in of_parts:
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
-    return router.routes
+    return [RouteTable(router.routes)]
 
 
 Lifespan: TypeAlias = Callable[[FastAPI], AbstractAsyncContextManager[None]]

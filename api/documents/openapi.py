@@ -12,6 +12,7 @@ from fastapi.openapi.utils import get_openapi
 from api.documents.examples import Exchange, key_of, load_examples
 from api.documents.wording import DESCRIPTION, LICENSE, TAGS, TOKEN
 from api.http.problems import MEDIA_TYPE
+from api.http.route_table import unfolded
 from api.http.schemas.inference import InferenceBody
 from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import SimulationBody
@@ -39,7 +40,7 @@ def describe(app: FastAPI) -> dict[str, Any]:
             description=DESCRIPTION,
             license_info=dict(LICENSE),
             openapi_version=app.openapi_version,
-            routes=app.routes,
+            routes=unfolded(app.routes),
             tags=[{"name": name, "description": told} for name, told in TAGS.items()],
         )
         _add_components(document["components"])

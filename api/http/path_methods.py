@@ -10,7 +10,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute, compile_path
 
 from api.http.dependencies import known_of_kind
-from api.http.gate.policies import each_route
+from api.http.route_table import each_route
 from domain.state_and_mode import part_name
 
 _SHOWN = frozenset({"DELETE", "GET", "PATCH", "POST", "PUT"})

@@ -2,14 +2,13 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Sequence
 
-from fastapi import routing
 from starlette.routing import BaseRoute, compile_path
 from starlette.types import Scope
 
 from api.http.route_policy import RoutePolicy, UndeclaredRouteError, policy_of
+from api.http.route_table import each_route, first_name
 
 _KEY = "pilothouse.policy"
 _WEBSOCKET = "WEBSOCKET"
@@ -37,7 +36,7 @@ class RoutePolicies:
                 raise UndeclaredRouteError(route.path)
             pattern, _, _ = compile_path(route.path)
             for method in route.methods or (_WEBSOCKET,):
-                self._routes[method, _first_name(route.path)].append((pattern, declared))
+                self._routes[method, first_name(route.path)].append((pattern, declared))
 
     def of(self, scope: Scope) -> RoutePolicy | None:
         """Return the policy of the route of a request; None: there is no such route.
@@ -55,20 +54,6 @@ class RoutePolicies:
     def _find(self, scope: Scope) -> RoutePolicy | None:
         method = scope.get("method", _WEBSOCKET)
         path: str = scope["path"]
-        key = ("GET" if method == "HEAD" else method, _first_name(path))
+        key = ("GET" if method == "HEAD" else method, first_name(path))
         candidates = self._routes.get(key, ())
         return next((declared for pattern, declared in candidates if pattern.match(path)), None)
-
-
-def _first_name(path: str) -> str:
-    """Return the first segment of a path; no route has a parameter there."""
-    return path.split("/", 2)[1] if "/" in path else ""
-
-
-def each_route(routes: Sequence[BaseRoute]) -> Iterator[Any]:
-    """Yield each route with its whole path, methods and endpoint, also those of included routers.
-
-    FastAPI 0.115 copies the routes of an included router; later versions keep the router.
-    """
-    flattened = getattr(routing, "iter_route_contexts", iter)
-    yield from flattened(routes)

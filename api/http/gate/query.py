@@ -16,9 +16,9 @@ from starlette.routing import BaseRoute, compile_path
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from api.http.body_parsing import INVALID_QUERY, InvalidBodyError
-from api.http.gate.policies import each_route
 from api.http.problems import problem_of, problem_response
 from api.http.route_policy import Permission, policy_of
+from api.http.route_table import each_route
 from api.http.schemas.problem import BodyFault
 from api.http.stop_route import QUERY_FAULT, StopRoute
 from domain.errors import UnknownNameError, shortened

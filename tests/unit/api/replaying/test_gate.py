@@ -1,5 +1,5 @@
-from api.http.gate.policies import each_route
 from api.http.route_policy import policy_of
+from api.http.route_table import each_route
 from tests.support.viewer import Viewer
 
 

@@ -11,8 +11,9 @@ from starlette.types import Receive, Scope, Send
 from api.http.access import Access
 from api.http.gate.audit import Audit
 from api.http.gate.faults import UnexpectedErrors
-from api.http.gate.policies import RoutePolicies, each_route
+from api.http.gate.policies import RoutePolicies
 from api.http.route_policy import AuditClass, Permission, policy, policy_of
+from api.http.route_table import each_route
 from domain.inputs import WriteRecord
 from tests.support.asgi import messages_of
 from tests.support.http_robot import HttpRobot, declared_policies, http_robot, http_scope

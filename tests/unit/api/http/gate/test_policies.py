@@ -6,7 +6,7 @@ import pytest
 from fastapi import APIRouter, FastAPI
 
 from api.app import create_app
-from api.http.gate.policies import RoutePolicies, each_route
+from api.http.gate.policies import RoutePolicies
 from api.http.route_policy import (
     AuditClass,
     Permission,
@@ -15,6 +15,7 @@ from api.http.route_policy import (
     policy,
     policy_of,
 )
+from api.http.route_table import each_route
 from tests.support.asgi import websocket_scope
 from tests.support.http_robot import declared_policies, http_scope
 from tests.support.live_robot import make_supervisor

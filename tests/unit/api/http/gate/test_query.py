@@ -6,8 +6,8 @@ import httpx
 import pytest
 from fastapi import FastAPI, Query
 
-from api.http.gate.policies import each_route
 from api.http.gate.query import QueryGate, query_fields
+from api.http.route_table import each_route
 from tests.support.http_robot import HttpRobot
 from tests.support.manual_clock import ManualClock
 from tests.support.tables import text_table
