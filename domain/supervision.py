@@ -36,7 +36,7 @@ from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.propagation import Propagation
 from domain.health.reported_errors import ReportedErrors
-from domain.inputs import ChangeRequest, Input, TimePassed
+from domain.inputs import ChangeRequest, Input, TimePassed, WriteRecord
 from domain.lifecycle import Transition
 from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
@@ -289,7 +289,9 @@ class Supervision:
             take(given, self._now)
         if self._has_more and isinstance(given, TimePassed):
             self._go_on()
-        self._settle()
+        # Nothing follows from a record, and all was settled before it.
+        if not isinstance(given, WriteRecord):
+            self._settle()
         return self._outbox.take()
 
     def _let_pass(self, now: Instant) -> None:

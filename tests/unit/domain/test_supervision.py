@@ -707,8 +707,13 @@ SCRIPTS = st.lists(
 )
 
 
-def _run(script: list[Given], start: Instant = 0, extra_ms: Iterable[int] = ()) -> Run:
-    """Hand in a script; time passes besides at `extra_ms` after the start."""
+def _run(
+    script: list[Given],
+    start: Instant = 0,
+    extra_ms: Iterable[int] = (),
+    extra: Input = TimePassed(),  # noqa: B008
+) -> Run:
+    """Hand in a script, and besides `extra` at each of `extra_ms` after the start."""
     run = Run(Supervision(MODEL, SupervisionSettings(), start))
     inputs: list[tuple[int, int, Input]] = []
     at = 0
@@ -716,7 +721,7 @@ def _run(script: list[Given], start: Instant = 0, extra_ms: Iterable[int] = ()) 
         at += step.after_ms
         inputs.append((at, number, step.given))
     end = at + 30_000
-    inputs += [(extra, -1, TimePassed()) for extra in extra_ms if extra <= end]
+    inputs += [(at_ms, -1, extra) for at_ms in extra_ms if at_ms <= end]
     for at_ms, _, given_ in sorted(inputs, key=lambda item: item[:2]):
         run.hand(given_, start + at_ms * 1_000_000)
     run.hand(TimePassed(), start + end * 1_000_000)
@@ -740,6 +745,25 @@ def test_one_big_step_equals_many_small_ones(script: list[Given], extra_ms: list
     assert small.commands == big.commands
     assert small.refusals == big.refusals
     assert _seen(small.core) == _seen(big.core)
+
+
+@given(SCRIPTS, st.lists(st.integers(0, 60_000), max_size=40))
+@settings(max_examples=60)
+def test_nothing_follows_from_the_record_of_a_request(
+    script: list[Given], extra_ms: list[int]
+) -> None:
+    record = WriteRecord("PUT", "/holds/gate", 200, "10.0.0.7:4711")
+    bare, recorded = _run(script), _run(script, extra_ms=extra_ms, extra=record)
+    others = [event for event in recorded.events if event.kind != "audit.write"]
+    assert [(event.at, event.kind) for event in others] == [
+        (event.at, event.kind) for event in bare.events
+    ]
+    assert recorded.commands == bare.commands
+    assert recorded.refusals == bare.refusals
+    # Events have other ids, and so have causes.
+    one, other = bare.core, recorded.core
+    assert dict(other.parts()) == dict(one.parts())
+    assert (other.system_state(), other.wake_at()) == (one.system_state(), one.wake_at())
 
 
 @given(SCRIPTS, st.sampled_from([seconds(1), seconds(86_400 * 365)]))
