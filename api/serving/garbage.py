@@ -93,7 +93,7 @@ class Heap:
 
 
 def _give_back_freed_memory() -> None:
-    """Give pages that hold nothing any more back to the system: 5 MB after a start.
+    """Give pages that hold nothing any more back to the system: 3 MB after a start.
 
     The C library keeps them otherwise, between what is still in use. Only that of GNU can do this.
     """
