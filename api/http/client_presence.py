@@ -32,6 +32,8 @@ async def while_connected(request: Request, work: Coroutine[Any, Any, Result]) -
         working.cancel()
         gone.cancel()
         await asyncio.gather(working, gone, return_exceptions=True)
+        # Its error refers to this frame: the two would be a cycle of garbage.
+        del working
 
 
 async def _disconnected(request: Request) -> None:

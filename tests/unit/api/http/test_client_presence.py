@@ -1,6 +1,9 @@
 """What is done for a client ends with it."""
 
 import asyncio
+import gc
+import weakref
+from contextlib import suppress
 from typing import Any
 
 import pytest
@@ -72,6 +75,26 @@ async def test_an_error_of_the_work_is_raised() -> None:
 
     with pytest.raises(UnknownPartError):
         await while_connected(Client().request, fail())
+
+
+async def test_an_error_is_released_without_a_collection_of_garbage() -> None:
+    seen: list[weakref.ref[Exception]] = []
+
+    async def fail() -> None:
+        error = UnknownPartError("part", "base", ())
+        seen.append(weakref.ref(error))
+        try:
+            raise error
+        finally:
+            del error
+
+    gc.disable()
+    try:
+        with suppress(UnknownPartError):
+            await while_connected(Client().request, fail())
+        assert seen[0]() is None
+    finally:
+        gc.enable()
 
 
 async def test_a_service_that_ends_gives_up_the_work_and_the_watch() -> None:
