@@ -11,6 +11,8 @@ from pathlib import Path
 from service.processes import guard_child
 
 FILE = Path(guard_child.__file__)
+ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""What ends a service."""
 
 
 @contextmanager
@@ -52,9 +54,9 @@ def test_what_does_not_listen_is_killed() -> None:
 def test_the_guard_is_not_ended_by_what_ends_the_service() -> None:
     with guard() as it:
         assert it.stdin is not None
-        while not _ignores(it.pid, signal.SIGHUP):
+        while not all(_ignores(it.pid, number) for number in ENDS):
             os.sched_yield()
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in ENDS:
             it.send_signal(number)
         it.stdin.close()
 
