@@ -10,7 +10,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute, compile_path
 
 from api.http.dependencies import known_of_kind
-from api.http.route_table import each_route
+from api.http.route_table import each_route, methods_of
 from domain.state_and_mode import part_name
 
 _SHOWN = frozenset({"DELETE", "GET", "PATCH", "POST", "PUT"})
@@ -69,4 +69,4 @@ def _collect(routes: Sequence[BaseRoute]) -> Iterator[_Route]:
     for route in each_route(routes):
         pattern, _, _ = compile_path(route.path)
         literals = sum(not name.startswith("{") for name in route.path.split("/"))
-        yield pattern, literals, frozenset(route.methods or ())
+        yield pattern, literals, methods_of(route)

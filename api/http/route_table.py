@@ -68,3 +68,8 @@ def each_route(routes: Sequence[BaseRoute]) -> Iterator[Any]:
     """
     flattened = getattr(routing, "iter_route_contexts", iter)
     yield from flattened(unfolded(routes))
+
+
+def methods_of(route: Any) -> frozenset[str]:  # noqa: ANN401
+    """Return the methods of a route of `each_route`; none: it is one of WebSockets."""
+    return frozenset(getattr(route, "methods", None) or ())

@@ -8,7 +8,7 @@ from starlette.routing import BaseRoute, compile_path
 from starlette.types import Scope
 
 from api.http.route_policy import RoutePolicy, UndeclaredRouteError, policy_of
-from api.http.route_table import each_route, first_name
+from api.http.route_table import each_route, first_name, methods_of
 
 _KEY = "pilothouse.policy"
 _WEBSOCKET = "WEBSOCKET"
@@ -35,7 +35,7 @@ class RoutePolicies:
             if declared is None:
                 raise UndeclaredRouteError(route.path)
             pattern, _, _ = compile_path(route.path)
-            for method in route.methods or (_WEBSOCKET,):
+            for method in methods_of(route) or (_WEBSOCKET,):
                 self._routes[method, first_name(route.path)].append((pattern, declared))
 
     def of(self, scope: Scope) -> RoutePolicy | None:

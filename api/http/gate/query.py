@@ -18,7 +18,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from api.http.body_parsing import INVALID_QUERY, InvalidBodyError
 from api.http.problems import problem_of, problem_response
 from api.http.route_policy import Permission, policy_of
-from api.http.route_table import each_route
+from api.http.route_table import each_route, methods_of
 from api.http.schemas.problem import BodyFault
 from api.http.stop_route import QUERY_FAULT, StopRoute
 from domain.errors import UnknownNameError, shortened
@@ -113,7 +113,7 @@ def _writes_by_path(routes: Iterable[BaseRoute]) -> _Routes:
         decides = _decides(route)
         fields = None if not decides and _stops(route) else query_fields(route)
         writes = found.setdefault(route.path, {})
-        for method in _WRITES.intersection(route.methods or ()):
+        for method in _WRITES & methods_of(route):
             writes.setdefault(method, _Known(fields, decides))
     return [(compile_path(path)[0], writes) for path, writes in found.items()]
 

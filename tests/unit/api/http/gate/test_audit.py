@@ -13,7 +13,7 @@ from api.http.gate.audit import Audit
 from api.http.gate.faults import UnexpectedErrors
 from api.http.gate.policies import RoutePolicies
 from api.http.route_policy import AuditClass, Permission, policy, policy_of
-from api.http.route_table import each_route
+from api.http.route_table import each_route, methods_of
 from domain.inputs import WriteRecord
 from tests.support.asgi import messages_of
 from tests.support.http_robot import HttpRobot, declared_policies, http_robot, http_scope
@@ -125,7 +125,7 @@ def test_just_the_routes_that_take_a_dry_run_are_recorded_without_it_only(
         (route.path.replace(":path", ""), method)
         for route in each_route(robot.app.routes)
         if (found := policy_of(route.endpoint)) and found.audit is AuditClass.UNLESS_DRY_RUN
-        for method in route.methods
+        for method in methods_of(route)
     }
 
     assert planned

@@ -7,7 +7,7 @@ import pytest
 from fastapi import FastAPI, Query
 
 from api.http.gate.query import QueryGate, query_fields
-from api.http.route_table import each_route
+from api.http.route_table import each_route, methods_of
 from tests.support.http_robot import HttpRobot
 from tests.support.manual_clock import ManualClock
 from tests.support.tables import text_table
@@ -176,7 +176,7 @@ def test_the_fields_are_those_of_the_description(robot: HttpRobot) -> None:
     found = {
         (method, route.path_format): list(query_fields(route))
         for route in each_route(robot.app.routes)
-        for method in route.methods or ()
+        for method in methods_of(route)
         if (method, route.path_format) in described
     }
 
