@@ -48,7 +48,7 @@ def part_text(view: PartView, show: Callable[[Instant], str]) -> str:
         "device": view.device,
         "last_known": last and {"state": str(last.state), "mode": last.mode},
     }
-    return to_json(shown).decode()
+    return to_json(shown, inf_nan_mode="null").decode()
 
 
 def _effective(target: EffectiveTarget, show: Callable[[Instant], str]) -> dict[str, object]:
