@@ -4,7 +4,6 @@ import asyncio
 import gc
 import weakref
 from contextlib import suppress
-from typing import Any
 
 import pytest
 from fastapi import Request
@@ -12,23 +11,17 @@ from starlette.requests import ClientDisconnect
 
 from api.http.client_presence import while_connected
 from domain.errors import UnknownPartError
+from tests.support.going_client import GoingClient
 from tests.support.http_robot import http_scope
 from tests.support.manual_clock import settle
 
 
-class Client:
-    """Is there until it goes."""
+class Client(GoingClient):
+    """Has asked for a frame."""
 
     def __init__(self) -> None:
-        self.gone = asyncio.Event()
-        self.request = Request(http_scope("GET", "/frames"), self._receive)
-        self._said: list[dict[str, Any]] = [{"type": "http.request", "body": b""}]
-
-    async def _receive(self) -> dict[str, Any]:
-        if self._said:
-            return self._said.pop()
-        await self.gone.wait()
-        return {"type": "http.disconnect"}
+        super().__init__()
+        self.request = Request(http_scope("GET", "/frames"), self.receive)
 
 
 class Work:

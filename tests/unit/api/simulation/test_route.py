@@ -8,6 +8,7 @@ import pytest
 from api.simulation import route
 from domain.simulation.node_settings import Fault
 from service.worker import WorkerBusyError
+from tests.support.going_client import EndlessWork, GoingClient
 from tests.support.http_robot import HttpRobot, http_scope
 from tests.support.manual_clock import settle
 from tests.support.robot_with_devices import device_robot
@@ -193,33 +194,17 @@ async def test_the_live_robot_is_not_copied_for_a_queue_that_is_full(
 async def test_a_simulation_is_given_up_when_its_client_disconnects(
     robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    said = [{"type": "http.request", "body": b'{"until_s": 1}', "more_body": False}]
-    gone, given_up = asyncio.Event(), asyncio.Event()
-
-    async def work_without_end(*_: object) -> None:
-        try:
-            await asyncio.Event().wait()
-        finally:
-            given_up.set()
-
-    async def receive() -> dict[str, Any]:
-        if said:
-            return said.pop()
-        await gone.wait()
-        return {"type": "http.disconnect"}
-
-    async def send(message: object) -> None:
-        raise AssertionError(message)
-
-    monkeypatch.setattr(robot.app.state.simulator, "call", work_without_end)
-    request = asyncio.create_task(robot.app(http_scope("POST", "/simulations"), receive, send))
+    client, work = GoingClient(b'{"until_s": 1}'), EndlessWork()
+    monkeypatch.setattr(robot.app.state.simulator, "call", work.do)
+    scope = http_scope("POST", "/simulations")
+    request = asyncio.create_task(robot.app(scope, client.receive, client.send))
     await settle()
     assert not request.done()
 
-    gone.set()
+    client.gone.set()
     await settle()
 
-    assert given_up.is_set()
+    assert work.is_given_up
     assert request.done()
 
 

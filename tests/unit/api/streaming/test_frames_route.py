@@ -1,5 +1,6 @@
 """`GET /frames`: how the robot was, asked hours and restarts later."""
 
+import asyncio
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,8 @@ from domain.outbox import NOTHING
 from service.storage.journal import Step
 from service.storage.sqlite.recorded_log import RecordedLog
 from service.worker import WorkerBusyError
-from tests.support.http_robot import HttpRobot
+from tests.support.going_client import EndlessWork, GoingClient
+from tests.support.http_robot import HttpRobot, http_scope
 from tests.support.manual_clock import ManualClock
 from tests.support.stored_service import StoredService, later, stored_service
 
@@ -213,3 +215,18 @@ async def test_whoever_asks_for_too_many_at_once_is_told_to_wait(
         answer = await robot.frame_at(robot.now)
 
     assert (answer.status_code, answer.headers["retry-after"]) == (429, "2")
+
+
+async def test_a_frame_is_given_up_when_its_client_disconnects(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with stored_service(folder, ManualClock()) as robot:
+        client, work = GoingClient(), EndlessWork()
+        monkeypatch.setattr(robot.app.state.replayer, "call", work.do)
+        scope = http_scope("GET", "/frames", f"at={robot.now}", host="127.0.0.1:8000")
+        request = asyncio.create_task(robot.app(scope, client.receive, client.send))
+        async with asyncio.timeout(10):
+            while not work.is_given_up:
+                client.gone.set()
+                await asyncio.sleep(0.01)
+            await request

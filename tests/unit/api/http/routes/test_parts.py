@@ -1,13 +1,14 @@
 """`/systems` and `/nodes` as an operator uses them."""
 
 import asyncio
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pytest
 
 from domain.inputs import BackendStatus
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.timebase import seconds
+from tests.support.going_client import GoingClient
 from tests.support.http_robot import ACTUATION, HttpRobot, http_robot, http_scope
 from tests.support.manual_clock import settle
 from tests.support.tables import table
@@ -425,25 +426,15 @@ async def test_a_body_that_says_something_impossible_is_told_where(
 
 
 async def test_a_client_that_goes_while_it_waits_leaves_nothing_behind(robot: HttpRobot) -> None:
-    said = [{"type": "http.request", "body": b'{"mode":"FAST"}', "more_body": False}]
-    gone = asyncio.Event()
-
-    async def receive() -> dict[str, Any]:
-        if said:
-            return said.pop()
-        await gone.wait()
-        return {"type": "http.disconnect"}
-
-    async def send(message: object) -> None:
-        del message
-
+    client = GoingClient(b'{"mode":"FAST"}')
     path = "/nodes/drive_base/mode"
     before = waiting_tasks()
-    request = asyncio.create_task(robot.app(http_scope("POST", path, "wait=60"), receive, send))
+    scope = http_scope("POST", path, "wait=60")
+    request = asyncio.create_task(robot.app(scope, client.receive, client.send))
     await settle()
     assert not request.done()
 
-    gone.set()
+    client.gone.set()
     await settle()
 
     assert request.done()
