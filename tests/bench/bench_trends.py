@@ -2,12 +2,14 @@
 
 import os
 import time
+from array import array
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import apsw
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from domain.health.signals import SignalKind, SignalSettings, SignalSpec
 from domain.snapshot import SignalView
@@ -15,7 +17,15 @@ from domain.timebase import NANOSECONDS_PER_SECOND, Instant, seconds
 from service.storage.trends.block_file import BlockFile
 from service.storage.trends.known_signals import KnownSignals
 from service.storage.trends.recorder import Recorder
-from service.storage.trends.rows import NO_ERROR, Rows
+from service.storage.trends.rows import (
+    NO_ERROR,
+    RANKS,
+    TIMES,
+    VALUES,
+    Rows,
+    RowsBySignal,
+    row_count,
+)
 from service.storage.trends.sampling import Sampling
 from service.storage.trends.tiers import TIERS
 from service.storage.trends.trends import HAND_OVER, Trends
@@ -59,10 +69,9 @@ class _Readings:
         }
         """Values of single readings, by signal and second."""
 
-    def pieces(self) -> Iterator[tuple[int, Rows]]:
+    def pieces(self) -> Iterator[tuple[int, RowsBySignal]]:
         """Yield each piece with the second at which it begins."""
         turns = PACE_S * RATE_HZ
-        number = np.tile(np.arange(SIGNALS), turns)
         turn = np.repeat(np.arange(turns), SIGNALS) * (NANOSECONDS_PER_SECOND // RATE_HZ)
         by_piece: dict[int, list[tuple[int, int, float]]] = {}
         for (signal, second), value in self.spikes.items():
@@ -76,10 +85,17 @@ class _Readings:
                 values[second * RATE_HZ * SIGNALS + signal] = spike
             late = self._random.integers(0, 1_000_000, turns).repeat(SIGNALS)
             at = START + piece * HAND_OVER + turn + late
-            yield (
-                piece * PACE_S,
-                Rows.of_readings(number, at, values, np.full(len(at), NO_ERROR)),
-            )
+            yield piece * PACE_S, {number: _rows(number, at, values) for number in range(SIGNALS)}
+
+
+def _rows(number: int, at: NDArray[np.int64], values: NDArray[np.float64]) -> Rows:
+    """Return those of one signal of readings in which the signals take turns."""
+    own = slice(number, None, SIGNALS)
+    return Rows.of_readings(
+        array(TIMES, at[own].tobytes()),
+        array(VALUES, values[own].tobytes()),
+        array(RANKS, [NO_ERROR]) * (len(at) // SIGNALS),
+    )
 
 
 def test_a_day_of_two_hundred_signals(tmp_path: Path) -> None:
@@ -92,7 +108,7 @@ def test_a_day_of_two_hundred_signals(tmp_path: Path) -> None:
         recorder.add(rows, seconds(second))
         recorder.settle(seconds(second + PACE_S))
         spent.append(time.perf_counter() - start)
-        readings += len(rows)
+        readings += row_count(rows)
     recorder.close(seconds(DAY_S))
     size = sum(entry.stat().st_size for entry in tmp_path.iterdir())
     start = time.perf_counter()

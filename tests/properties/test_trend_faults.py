@@ -48,7 +48,7 @@ class _Story:
         for piece in range(PIECES):
             at = START + piece * seconds(EVERY_S)
             value = 99.0 if piece == 7 else 1.0
-            self.recorder.add(readings([value] * IN_PIECE, at), self._elapsed)
+            self.recorder.add({0: readings([value] * IN_PIECE, at)}, self._elapsed)
             self.given += IN_PIECE
             self._elapsed += seconds(EVERY_S)
             self.recorder.settle(self._elapsed)
@@ -61,7 +61,7 @@ class _Story:
     def counted(self) -> int:
         self.recorder.settle(self._elapsed)
         rows = self.recorder.rows(COARSEST, self.known.by_name["load"], 0, 2**62)
-        return int(rows.count.sum())
+        return sum(rows.count)
 
 
 def _operations(folder: Path) -> int:

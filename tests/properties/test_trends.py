@@ -9,7 +9,6 @@ from math import fsum
 from pathlib import Path
 
 import hypothesis.strategies as st
-import numpy as np
 from hypothesis import event, given, settings
 
 from domain.timebase import Duration, Instant, seconds
@@ -18,7 +17,7 @@ from service.storage.trends.known_signals import KnownSignals
 from service.storage.trends.recorder import Recorder
 from service.storage.trends.rows import NO_ERROR, Rows
 from service.storage.trends.tiers import MILLISECOND, Tier
-from tests.support.trend_readings import SMALL_TIERS, START, load
+from tests.support.trend_readings import SMALL_TIERS, START, load, readings
 
 SOAK = os.environ.get("PILOTHOUSE_SOAK") == "1"
 ERRORS = (None, "LOAD_HEAVY", "LOAD_OVERLOAD")
@@ -86,12 +85,7 @@ class _Story:
         error = ERRORS[reading.error]
         name = error and error.replace("LOAD_", f"{reading.signal.upper()}_")
         self.recorder.add(
-            Rows.of_readings(
-                np.array([known.number]),
-                np.array([self._at]),
-                np.array([reading.value]),
-                np.array([known.rank_of(name)]),
-            ),
+            {known.number: readings([reading.value], self._at, errors=[known.rank_of(name)])},
             self._elapsed,
         )
 
@@ -132,8 +126,9 @@ def _agrees(rows: Rows, noted: list[_Noted], tier: Tier) -> None:
     width = tier.width or 1_000
     merged = rows.in_buckets(width)
     expected = dict(_buckets(noted, width))
-    assert (merged.first // width).tolist() == sorted(expected)
-    for place, bucket in enumerate((merged.first // width).tolist()):
+    buckets = [at // width for at in merged.first]
+    assert buckets == sorted(expected)
+    for place, bucket in enumerate(buckets):
         values = [value for _, value, _ in expected[bucket]]
         low, high = min(values), max(values)
         assert (merged.low[place], merged.high[place]) == (low, high)

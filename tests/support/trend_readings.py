@@ -1,12 +1,11 @@
 """Signals and readings for tests of their history."""
 
+from array import array
 from collections.abc import Iterable
-
-import numpy as np
 
 from domain.health.signals import Bound, Comparison, SignalKind, SignalSettings, SignalSpec
 from domain.timebase import Duration, Instant, seconds
-from service.storage.trends.rows import NO_ERROR, Rows
+from service.storage.trends.rows import NO_ERROR, RANKS, TIMES, VALUES, Rows
 from service.storage.trends.tiers import Tier
 
 START: Instant = 1_767_225_600_000_000_000
@@ -36,11 +35,10 @@ def readings(
     values: Iterable[float],
     start: Instant = START,
     every: Duration = seconds(0.05),
-    signal: int = 0,
     errors: Iterable[int] | None = None,
 ) -> Rows:
     """Return readings of one signal at equal distances."""
-    value = np.array([*values], np.float64)
-    at = start + every * np.arange(len(value))
-    ranks = np.full(len(value), NO_ERROR) if errors is None else np.array([*errors], np.int64)
-    return Rows.of_readings(np.full(len(value), signal), at, value, ranks)
+    value = array(VALUES, values)
+    at = array(TIMES, [start + every * number for number in range(len(value))])
+    ranks = [NO_ERROR] * len(value) if errors is None else errors
+    return Rows.of_readings(at, value, array(RANKS, ranks))

@@ -9,10 +9,10 @@ from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 from domain.timebase import Duration, Instant, seconds
-from service.storage.trends.rows import Rows
+from service.storage.trends.rows import Rows, RowsBySignal, row_count
 from service.storage.trends.tiers import Tier
 
-Write: TypeAlias = Callable[[int, Rows], bool]
+Write: TypeAlias = Callable[[int, RowsBySignal], bool]
 """Packs and writes rows of the tier with an index; returns whether that succeeded."""
 
 _PATIENCE = seconds(10.0)
@@ -24,7 +24,8 @@ class Cascade:
 
     def __init__(self, tiers: Sequence[Tier]) -> None:
         self._tiers = tiers
-        self._waiting: list[list[Rows]] = [[] for _ in tiers]
+        self._waiting: list[dict[int, list[Rows]]] = [{} for _ in tiers]
+        """By tier and signal, in the order of arrival."""
         self._since: list[Duration | None] = [None for _ in tiers]
         """Running time when the first of them came."""
         self.dropped = 0
@@ -32,7 +33,7 @@ class Cascade:
         self._has_orphans = False
         """Whether rows wait whose readings are in no block of a finer tier."""
 
-    def add(self, rows: Rows, ran: Duration, tier: int = 0) -> None:
+    def add(self, rows: RowsBySignal, ran: Duration, tier: int = 0) -> None:
         """Add rows to a tier.
 
         Args:
@@ -40,16 +41,16 @@ class Cascade:
             ran: Running time.
             tier: Index of the tier.
         """
-        if len(rows):
-            self._waiting[tier].append(rows)
-            if self._since[tier] is None:
-                self._since[tier] = ran
+        for signal, own in rows.items():
+            self._waiting[tier].setdefault(signal, []).append(own)
+        if rows and self._since[tier] is None:
+            self._since[tier] = ran
 
     def settle(self, write: Write, ran: Duration) -> None:
         """Make blocks of what has waited long enough, and pass it on to the next tier.
 
         Args:
-            write: Writes rows, sorted by signal and merged.
+            write: Writes rows, by signal and merged.
             ran: Running time.
         """
         is_written = False
@@ -71,13 +72,12 @@ class Cascade:
     def rows_of(self, tier: int, number: int) -> list[Rows]:
         """Return what is in no block of a tier of a signal, in the order of arrival."""
         return [
-            rows.of_signal(number) for index in range(tier, -1, -1) for rows in self._waiting[index]
+            rows for index in range(tier, -1, -1) for rows in self._waiting[index].get(number, ())
         ]
 
     def oldest(self, tier: int, number: int) -> Instant | None:
         """Return the time of the oldest of those rows; None: there is none."""
-        parts = [rows for rows in self.rows_of(tier, number) if len(rows)]
-        return min((int(rows.first.min()) for rows in parts), default=None)
+        return min((min(rows.first) for rows in self.rows_of(tier, number)), default=None)
 
     def _write_all(self, write: Write) -> None:
         self._has_orphans = False
@@ -87,16 +87,21 @@ class Cascade:
 
     def _pack(self, index: int, write: Write, *, is_last_try: bool) -> bool:
         """Make blocks of what waits in a tier; return whether they are written."""
-        rows = Rows.joined(self._waiting[index]).in_buckets(self._tiers[index].width)
-        self._waiting[index] = [rows]
+        rows = {
+            signal: Rows.joined(parts).in_buckets(self._tiers[index].width)
+            for signal, parts in sorted(self._waiting[index].items())
+        }
+        self._waiting[index] = {signal: [own] for signal, own in rows.items()}
         is_written = write(index, rows)
         if not is_written and not is_last_try:
             return False
         if not is_written:
-            self.dropped += len(rows)
+            self.dropped += row_count(rows)
             self._has_orphans = True
         since = self._since[index]
-        self._waiting[index], self._since[index] = [], None
+        self._waiting[index], self._since[index] = {}, None
         if index + 1 < len(self._tiers) and since is not None:
-            self.add(rows.in_buckets(self._tiers[index + 1].width), since, index + 1)
+            width = self._tiers[index + 1].width
+            coarser = {signal: own.in_buckets(width) for signal, own in rows.items()}
+            self.add(coarser, since, index + 1)
         return is_written

@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
+from itertools import repeat
 
 from domain.timebase import Duration, Instant
 from service.storage.trends.known_signals import KnownSignal
@@ -50,9 +49,8 @@ def trend_of(
         to_at: End of the chart.
         points: Most points, at least 2.
     """
-    is_seen = (rows.last >= from_at - tier.unit + 1) & (rows.first <= to_at)
-    rows = rows.taken(is_seen)
-    rows = _merged(rows, tier.width, from_at) if tier.width else _in_order(rows)
+    rows = rows.overlapping(from_at - tier.unit + 1, to_at)
+    rows = _merged(rows, tier.width, from_at) if tier.width else rows.in_order()
     if len(rows) > points:
         unit = tier.width or tier.unit
         # Bins begin at multiples of their width, so that a chart that moves on does not flicker;
@@ -62,22 +60,13 @@ def trend_of(
 
 
 def _merged(rows: Rows, width: Duration, from_at: Instant) -> Rows:
-    bucket = np.maximum(rows.first, from_at) // width
-    order = np.lexsort((rows.last, bucket))
-    return rows.taken(order).merged(bucket[order])
-
-
-def _in_order(rows: Rows) -> Rows:
-    return rows.taken(np.argsort(rows.first, kind="stable"))
+    return rows.merged([max(first, from_at) // width for first in rows.first])
 
 
 def _points(rows: Rows, signal: KnownSignal, from_at: Instant) -> list[TrendPoint]:
     names = {rank: error for error, rank in signal.ranks.items()}
-    errors = [names.get(rank) for rank in rows.error.tolist()]
-    low, high, last = (column.tolist() for column in (rows.low, rows.high, rows.final))
-    mean: Sequence[float | None] = rows.mean.tolist()
-    if signal.codes:
-        low, high, last = ([signal.value_of(code) for code in codes] for codes in (low, high, last))
-        mean = [None] * len(rows)
-    at = np.maximum(rows.first, from_at).tolist()
+    errors = map(names.get, rows.error)
+    low, high, last = (map(signal.value_of, codes) for codes in (rows.low, rows.high, rows.final))
+    mean = repeat(None) if signal.codes else rows.mean
+    at = [max(first, from_at) for first in rows.first]
     return [*map(TrendPoint, at, low, high, mean, last, errors)]

@@ -7,20 +7,23 @@ Times are rounded down to the unit of the tier. Values are exact, but for the me
 65,535th of the way from the minimum to the maximum.
 """
 
+import sys
 import zlib
-from collections.abc import Sequence
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from array import array
+from collections.abc import Iterator, Sequence
+from itertools import accumulate, repeat
+from operator import add, mul, sub
+from typing import Any, Final
 
 from domain.timebase import Duration, Instant
-from service.storage.trends.rows import NO_ERROR, Floats, Integers, Rows
+from service.storage.trends.rows import COUNTS, NO_ERROR, RANKS, TIMES, VALUES, Rows
 
 _LEVEL = 1
 """Of compression: higher levels save 1 % of such columns, for several times the work."""
 
 _MEAN_STEPS = 65_535
+_SHARES: Final = "H"
+_PLACES: Final = "B"
 
 
 def pack(rows: Rows, errors: Sequence[int], unit: Duration, *, is_raw: bool) -> bytes:
@@ -32,19 +35,17 @@ def pack(rows: Rows, errors: Sequence[int], unit: Duration, *, is_raw: bool) -> 
         unit: To which times are rounded down.
         is_raw: Whether each row is a single reading.
     """
-    first = rows.first // unit
-    steps = np.zeros(len(rows), np.int64)
-    np.subtract(first[1:], first[:-1], out=steps[1:])
-    columns: list[NDArray[np.generic]] = [steps]
+    first = [at // unit for at in rows.first]
+    columns: list[array[Any]] = [array(TIMES, [0, *map(sub, first[1:], first)])]
     if is_raw:
         columns.append(rows.low)
     else:
-        columns += [rows.last // unit - first, rows.low, rows.high, rows.final]
-        columns += [_mean_steps(rows), rows.count]
+        last = [at // unit for at in rows.last]
+        columns += [array(TIMES, map(sub, last, first)), rows.low, rows.high, rows.final]
+        columns += [array(_SHARES, _mean_steps(rows)), rows.count]
     if errors:
         places = {rank: place for place, rank in enumerate(errors, 1)}
-        ranks = rows.error.tolist()
-        columns.append(np.array([places.get(rank, 0) for rank in ranks], np.uint8))
+        columns.append(array(_PLACES, [places.get(rank, 0) for rank in rows.error]))
     return zlib.compress(b"".join(map(_planes, columns)), _LEVEL)
 
 
@@ -56,7 +57,6 @@ def unpack(
     unit: Duration,
     *,
     is_raw: bool,
-    signal: int,
 ) -> Rows:
     """Return the rows that `pack` made bytes of.
 
@@ -67,63 +67,85 @@ def unpack(
         errors: The ranks of errors, in the order given to `pack`.
         unit: To which times were rounded down.
         is_raw: Whether each row is a single reading.
-        signal: Number of the signal.
 
     Raises:
         ValueError: These are not such bytes.
         zlib.error: They cannot be decompressed.
     """
     columns = _Columns(zlib.decompress(data), length)
-    first = (np.cumsum(columns.integers()) + first_at // unit) * unit
-    number = np.full(length, signal)
+    try:
+        return _unpacked(columns, first_at, errors, unit, is_raw=is_raw)
+    except (IndexError, OverflowError) as error:
+        raise ValueError(f"not rows that were packed: {error}") from error
+
+
+def _unpacked(
+    columns: "_Columns", first_at: Instant, errors: Sequence[int], unit: Duration, *, is_raw: bool
+) -> Rows:
+    steps = columns.take(TIMES)
+    steps[0] += first_at // unit
+    first = array(TIMES, map(mul, accumulate(steps), repeat(unit)))
     if is_raw:
-        value = columns.floats()
-        return Rows.of_readings(number, first, value, columns.ranks(errors))
-    last = first + columns.integers() * unit
-    low, high, final = columns.floats(), columns.floats(), columns.floats()
-    share = columns.take(np.uint16) / _MEAN_STEPS
-    mean = np.clip(low * (1.0 - share) + high * share, low, high)
-    count = columns.integers()
-    error = columns.ranks(errors)
-    return Rows(number, first, last, low, high, mean, final, count, error)
+        return Rows.of_readings(first, columns.take(VALUES), columns.ranks(errors))
+    last = array(TIMES, map(add, first, map(mul, columns.take(TIMES), repeat(unit))))
+    low, high, final = columns.take(VALUES), columns.take(VALUES), columns.take(VALUES)
+    mean = array(VALUES, map(_mean, low, high, columns.take(_SHARES)))
+    count = columns.take(COUNTS)
+    if min(count) < 1:
+        raise IndexError("a row is of no reading")
+    return Rows(first, last, low, high, mean, final, count, columns.ranks(errors))
 
 
-def _mean_steps(rows: Rows) -> NDArray[np.uint16]:
-    # Halved, since the difference of large numbers would overflow.
-    span = rows.high / 2 - rows.low / 2
-    above = rows.mean / 2 - rows.low / 2
-    share = np.divide(above, span, out=np.zeros(len(rows)), where=span > 0)
-    steps: NDArray[np.uint16] = np.rint(np.clip(share, 0.0, 1.0) * _MEAN_STEPS).astype(np.uint16)
-    return steps
+def _mean_steps(rows: Rows) -> Iterator[int]:
+    for low, high, mean in zip(rows.low, rows.high, rows.mean, strict=True):
+        # Halved, since the difference of large numbers would overflow.
+        span = high / 2 - low / 2
+        share = (mean / 2 - low / 2) / span if span > 0 else 0.0
+        yield round(min(max(share, 0.0), 1.0) * _MEAN_STEPS)
 
 
-def _planes(column: NDArray[np.generic]) -> bytes:
-    little = np.ascontiguousarray(column, column.dtype.newbyteorder("<"))
-    return little.view(np.uint8).reshape(len(column), -1).T.tobytes()
+def _mean(low: float, high: float, step: int) -> float:
+    share = step / _MEAN_STEPS
+    return min(max(low * (1.0 - share) + high * share, low), high)
+
+
+def _planes(column: "array[Any]") -> bytes:
+    data = _little(column).tobytes()
+    return b"".join(data[place :: column.itemsize] for place in range(column.itemsize))
+
+
+def _little(column: "array[Any]") -> "array[Any]":
+    """Return a column with its bytes in the order of the file, or one of the file in our order."""
+    if sys.byteorder == "little":
+        return column
+    swapped = column[:]
+    swapped.byteswap()
+    return swapped
 
 
 class _Columns:
     """Takes one column after the other."""
 
     def __init__(self, data: bytes, length: int) -> None:
-        self._data = np.frombuffer(data, np.uint8)
+        self._data = data
         self._length = length
         self._at = 0
 
-    def take(self, kind: type[np.generic]) -> NDArray[Any]:
-        dtype = np.dtype(kind).newbyteorder("<")
-        end = self._at + self._length * dtype.itemsize
-        planes = self._data[self._at : end].reshape(dtype.itemsize, self._length)
+    def take(self, kind: str) -> "array[Any]":
+        column = array(kind)
+        end = self._at + self._length * column.itemsize
+        if end > len(self._data):
+            raise ValueError(f"{self._length} rows do not fit into {len(self._data)} bytes")
+        whole = bytearray(end - self._at)
+        for place in range(column.itemsize):
+            begin = self._at + place * self._length
+            whole[place :: column.itemsize] = self._data[begin : begin + self._length]
         self._at = end
-        return np.ascontiguousarray(planes.T).view(dtype).reshape(self._length)
+        column.frombytes(whole)
+        return _little(column)
 
-    def integers(self) -> Integers:
-        return self.take(np.int64).astype(np.int64, copy=False)
-
-    def floats(self) -> Floats:
-        return self.take(np.float64).astype(np.float64, copy=False)
-
-    def ranks(self, errors: Sequence[int]) -> Integers:
+    def ranks(self, errors: Sequence[int]) -> "array[int]":
         if not errors:
-            return np.full(self._length, NO_ERROR)
-        return np.array([NO_ERROR, *errors])[self.take(np.uint8).astype(np.int64)]
+            return array(RANKS, [NO_ERROR]) * self._length
+        ranks = (NO_ERROR, *errors)
+        return array(RANKS, map(ranks.__getitem__, self.take(_PLACES)))

@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 
 import apsw
-import numpy as np
 
 from domain.errors import StorageDegradedError
 from domain.timebase import Duration, Instant
@@ -25,7 +24,7 @@ from service.storage.trends.cascade import Cascade
 from service.storage.trends.history import Trend, trend_of
 from service.storage.trends.known_signals import KnownSignal, KnownSignals
 from service.storage.trends.packing import pack, unpack
-from service.storage.trends.rows import NO_ERROR, Rows
+from service.storage.trends.rows import NO_ERROR, Rows, RowsBySignal
 from service.storage.trends.tiers import Tier, pick_tier
 
 log = logging.getLogger(__name__)
@@ -64,11 +63,11 @@ class Recorder:
         """Return how many rows could not be written."""
         return self._cascade.dropped
 
-    def add(self, rows: Rows, elapsed: Duration) -> None:
+    def add(self, rows: RowsBySignal, elapsed: Duration) -> None:
         """Add readings, and write nothing yet.
 
         Args:
-            rows: Readings in the order of arrival.
+            rows: Readings by signal, in the order of arrival.
             elapsed: Running time of this run.
         """
         self._open()
@@ -116,7 +115,7 @@ class Recorder:
         if self._file is None:
             return Rows.joined(waiting)
         stored = self._file.read(tier, self._in_file[signal.number], from_at, to_at)
-        return Rows.joined([*self._unpacked(tier, stored), *waiting])
+        return Rows.joined([*(rows for _, rows in self._unpacked(tier, stored)), *waiting])
 
     def close(self, elapsed: Duration) -> None:
         """Write all readings, and close the file."""
@@ -155,14 +154,18 @@ class Recorder:
             self._in_file = {number: numbers[name] for number, name in enumerate(identities)}
             self._before, self.size = file.ran(), file.size
             waiting = [
-                Rows.joined([*self._unpacked(tier, file.not_in_next(tier))]).in_buckets(next_.width)
+                [
+                    (number, rows.in_buckets(next_.width))
+                    for number, rows in self._unpacked(tier, file.not_in_next(tier))
+                ]
                 for tier, next_ in enumerate(self._tiers[1:])
             ]
         except BaseException:
             file.close()
             raise
-        for tier, rows in enumerate(waiting, 1):
-            self._cascade.add(rows, self._before, tier)
+        for tier, blocks in enumerate(waiting, 1):
+            for number, rows in blocks:
+                self._cascade.add({number: rows}, self._before, tier)
         return file
 
     def _put_aside(self, error: Exception) -> None:
@@ -182,7 +185,7 @@ class Recorder:
 
     # --- blocks ----------------------------------------------------------------------------------
 
-    def _write(self, tier: int, rows: Rows, ran: Duration) -> bool:
+    def _write(self, tier: int, rows: RowsBySignal, ran: Duration) -> bool:
         if self._file is None:
             return False
         try:
@@ -193,21 +196,22 @@ class Recorder:
         self.reason, self.size = None, self._file.size
         return True
 
-    def _packed(self, index: int, rows: Rows) -> Iterator[Block]:
+    def _packed(self, index: int, rows: RowsBySignal) -> Iterator[Block]:
         tier = self._tiers[index]
-        for number, own in rows.by_signal():
+        for number, own in rows.items():
             ranks = _ranks(own)
             errors = self._signals[number].errors_of(ranks)
             yield Block(
                 self._in_file[number],
-                int(own.first.min()) // tier.unit * tier.unit,
-                int(own.last.max()),
+                min(own.first) // tier.unit * tier.unit,
+                max(own.last),
                 len(own),
                 json.dumps(errors) if errors else "",
                 pack(own, ranks, tier.unit, is_raw=not tier.width),
             )
 
-    def _unpacked(self, index: int, blocks: Iterable[Block]) -> Iterator[Rows]:
+    def _unpacked(self, index: int, blocks: Iterable[Block]) -> Iterator[tuple[int, Rows]]:
+        """Yield the rows of blocks, each with the number of its signal."""
         tier = self._tiers[index]
         in_memory = {stored: number for number, stored in self._in_file.items()}
         for block in blocks:
@@ -215,17 +219,13 @@ class Recorder:
                 number = in_memory[block.signal]
                 errors = json.loads(block.errors) if block.errors else []
                 ranks = [*map(self._signals[number].rank_of, errors)]
-                yield unpack(
-                    block.data,
-                    block.rows,
-                    block.from_at,
-                    ranks,
-                    tier.unit,
-                    is_raw=not tier.width,
-                    signal=number,
+                rows = unpack(
+                    block.data, block.rows, block.from_at, ranks, tier.unit, is_raw=not tier.width
                 )
             except _UNREADABLE as error:
                 log.warning("a block of %s cannot be read: %s", tier.name, error)
+            else:
+                yield number, rows
 
     def _oldest(self, tier: int, signal: KnownSignal) -> Instant | None:
         waiting = self._cascade.oldest(tier, signal.number)
@@ -237,6 +237,4 @@ class Recorder:
 
 def _ranks(rows: Rows) -> list[int]:
     """Return the ranks of the errors in rows; at most 255, the worst ones."""
-    if rows.error.max() == NO_ERROR:
-        return []
-    return [rank for rank in np.unique(rows.error).tolist() if rank != NO_ERROR][-255:]
+    return sorted({*rows.error} - {NO_ERROR})[-255:]

@@ -1,20 +1,28 @@
-"""Rows of numbers, each of which summarises readings of one signal; rows merge into coarser ones.
+"""Rows of one signal, each of which summarises readings; rows merge into coarser ones.
 
 Merging is exact for minimum, maximum, count, worst error and the last value, in any order and
 however often: a spike of one reading is in every tier.
+
+The columns are arrays of the standard library. A robot at rest has a history, too, and numpy alone
+would take it 13 MB.
 """
 
-from collections.abc import Iterator, Sequence
+from array import array
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import accumulate, compress, groupby, pairwise, repeat
+from operator import le, mul, truediv
+from typing import Any, Final, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
+from domain.timebase import Duration, Instant
 
-from domain.timebase import Duration
+Integers: TypeAlias = "array[int]"
+Floats: TypeAlias = "array[float]"
 
-Integers = NDArray[np.int64]
-Floats = NDArray[np.float64]
+TIMES: Final = "q"
+VALUES: Final = "d"
+RANKS: Final = "h"
+COUNTS: Final = "q"
 
 NO_ERROR = -(2**15)
 """Rank of readings without an error, below that of each error."""
@@ -24,8 +32,6 @@ NO_ERROR = -(2**15)
 class Rows:
     """Columns of the same length."""
 
-    signal: Integers
-    """Number of the signal."""
     first: Integers
     """Time of the first reading."""
     last: Integers
@@ -44,9 +50,9 @@ class Rows:
         return len(self.first)
 
     @classmethod
-    def of_readings(cls, signal: Integers, at: Integers, value: Floats, error: Integers) -> "Rows":
+    def of_readings(cls, at: Integers, value: Floats, error: Integers) -> "Rows":
         """Return a row per reading, in the order of arrival."""
-        return cls(signal, at, at, value, value, value, value, np.ones(len(at), np.int64), error)
+        return cls(at, at, value, value, value, value, array(COUNTS, [1]) * len(at), error)
 
     @classmethod
     def joined(cls, parts: Sequence["Rows"]) -> "Rows":
@@ -54,15 +60,13 @@ class Rows:
         if len(parts) == 1:
             return parts[0]
         if not parts:
-            integers, floats = np.empty(0, np.int64), np.empty(0)
-            return cls.of_readings(integers, integers, floats, integers)
+            return cls.of_readings(array(TIMES), array(VALUES), array(RANKS))
         columns = zip(*(part.columns() for part in parts), strict=True)
-        return cls(*map(np.concatenate, columns))
+        return cls(*map(_joined, columns))
 
-    def columns(self) -> tuple[NDArray[Any], ...]:
+    def columns(self) -> "tuple[array[Any], ...]":
         """Return all columns."""
         return (
-            self.signal,
             self.first,
             self.last,
             self.low,
@@ -73,72 +77,98 @@ class Rows:
             self.error,
         )
 
-    def taken(self, which: slice | NDArray[np.bool_] | Integers) -> "Rows":
-        """Return the rows of a slice, of a mask, or at indices."""
-        return Rows(*(column[which] for column in self.columns()))
+    def overlapping(self, from_at: Instant, to_at: Instant) -> "Rows":
+        """Return the rows that overlap a time."""
+        is_seen = [
+            last >= from_at and first <= to_at
+            for first, last in zip(self.first, self.last, strict=True)
+        ]
+        return self if all(is_seen) else self._each(lambda column: compress(column, is_seen))
 
-    def of_signal(self, number: int) -> "Rows":
-        """Return the rows of one signal."""
-        return self.taken(self.signal == number)
+    def in_order(self) -> "Rows":
+        """Return the rows by their first reading."""
+        return self if _is_rising(self.first) else self._sorted(self.first)
 
     def in_buckets(self, width: Duration) -> "Rows":
-        """Return the rows by signal and time, merged to one per signal and bucket.
+        """Return the rows by time, merged to one per bucket.
 
         Args:
             width: Of the buckets, which begin at multiples of it; 0: the rows are only sorted.
         """
         if not width:
-            return self.taken(np.lexsort((self.first, self.signal)))
-        bucket = self.first // width
-        # By time also within a bucket: after the clock was set back, the last ones to arrive are
-        # not the last ones.
-        order = np.lexsort((self.last, bucket, self.signal))
-        return self.taken(order).merged(self.signal[order], bucket[order])
+            return self.in_order()
+        return self.merged([first // width for first in self.first])
 
-    def merged(self, *keys: Integers) -> "Rows":
-        """Return one row for each run of equal keys.
+    def merged(self, buckets: Sequence[int]) -> "Rows":
+        """Return one row per bucket, by bucket.
 
         Args:
-            keys: Columns by which the rows are sorted, and by time where these are equal.
+            buckets: That of each row.
         """
-        if not len(self):
-            return self
-        is_new = np.zeros(len(self), np.bool_)
-        is_new[0] = True
-        for key in keys:
-            is_new[1:] |= key[1:] != key[:-1]
-        starts = np.flatnonzero(is_new)
-        if len(starts) == len(self):
-            return self
-        return self._reduced(starts)
+        # By time also within a bucket: after the clock was set back, the last ones to arrive are
+        # not the last ones.
+        if not (_is_rising(buckets) and _is_rising(self.last)):
+            rows = self._sorted([*zip(buckets, self.last, strict=True)])
+            return rows.merged_runs(sorted(buckets))
+        return self.merged_runs(buckets)
 
-    def _reduced(self, starts: Integers) -> "Rows":
-        ends = np.append(starts[1:], len(self))
-        count = np.add.reduceat(self.count, starts)
-        low = np.minimum.reduceat(self.low, starts)
-        high = np.maximum.reduceat(self.high, starts)
-        # Each is weighted before it is added, since a sum of large numbers would overflow. By
-        # rounding, that of the largest ones still can.
-        share = self.count / np.repeat(count, ends - starts)
-        with np.errstate(over="ignore"):
-            mean = np.clip(np.add.reduceat(self.mean * share, starts), low, high)
+    def _sorted(self, keys: Sequence[Instant | tuple[int, Instant]]) -> "Rows":
+        order = sorted(range(len(self)), key=keys.__getitem__)
+        return self._each(lambda column: map(column.__getitem__, order))
+
+    def _each(self, picked: "Callable[[array[Any]], Iterable[Any]]") -> "Rows":
+        """Return the rows that are picked from each column."""
+        return Rows(*(array(column.typecode, picked(column)) for column in self.columns()))
+
+    def merged_runs(self, buckets: Sequence[int]) -> "Rows":
+        """Return one row for each run of rows in the same bucket.
+
+        Args:
+            buckets: That of each row; within it, the rows are in the order of time.
+        """
+        lengths = [len([*run]) for _, run in groupby(buckets)]
+        if len(lengths) == len(self):
+            return self
+        spans = [slice(*ends) for ends in pairwise(accumulate(lengths, initial=0))]
+        low = array(VALUES, [min(self.low[span]) for span in spans])
+        high = array(VALUES, [max(self.high[span]) for span in spans])
+        means = [_mean(self.mean[span], self.count[span]) for span in spans]
         return Rows(
-            self.signal[starts],
-            np.minimum.reduceat(self.first, starts),
-            np.maximum.reduceat(self.last, starts),
+            array(TIMES, [min(self.first[span]) for span in spans]),
+            array(TIMES, [max(self.last[span]) for span in spans]),
             low,
             high,
-            mean,
-            self.final[ends - 1],
-            count,
-            np.maximum.reduceat(self.error, starts),
+            # By rounding, a mean may lie beside all that it is the mean of.
+            array(VALUES, map(max, low, map(min, high, means))),
+            array(VALUES, [self.final[span.stop - 1] for span in spans]),
+            array(COUNTS, [sum(self.count[span]) for span in spans]),
+            array(RANKS, [max(self.error[span]) for span in spans]),
         )
 
-    def by_signal(self) -> Iterator[tuple[int, "Rows"]]:
-        """Yield each signal with its rows, which have to be sorted by it."""
-        if not len(self):
-            return
-        starts = np.flatnonzero(np.diff(self.signal, prepend=self.signal[0] - 1))
-        ends = np.append(starts[1:], len(self))
-        for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
-            yield int(self.signal[start]), self.taken(slice(start, end))
+
+RowsBySignal: TypeAlias = Mapping[int, Rows]
+"""The rows of several signals, at least one of each, by the number of the signal."""
+
+
+def row_count(rows: RowsBySignal) -> int:
+    """Return how many rows there are of all signals."""
+    return sum(map(len, rows.values()))
+
+
+def _joined(parts: "Sequence[array[Any]]") -> "array[Any]":
+    whole = array(parts[0].typecode)
+    for part in parts:
+        whole.extend(part)
+    return whole
+
+
+def _is_rising(numbers: Sequence[int]) -> bool:
+    return all(map(le, numbers, numbers[1:]))
+
+
+def _mean(means: Floats, counts: Integers) -> float:
+    # Each is weighted before it is added, since a sum of large numbers would overflow. By rounding,
+    # that of the largest ones still can.
+    shares = map(truediv, counts, repeat(sum(counts)))
+    mean: float = sum(map(mul, means, shares))
+    return mean

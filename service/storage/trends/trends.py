@@ -148,7 +148,7 @@ class Trends:
         return 0 if self._started is None else self._now - self._started
 
     def _hand_over(self) -> None:
-        if (rows := self._intake.take()) is not None:
+        if rows := self._intake.take():
             self._do(partial(self._recorder.add, rows, self._elapsed()))
 
     def _do(self, work: Callable[[], None]) -> asyncio.Future[None]:

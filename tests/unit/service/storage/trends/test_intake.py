@@ -4,7 +4,7 @@ import pytest
 
 from service.storage.trends import intake
 from service.storage.trends.intake import Intake
-from service.storage.trends.rows import NO_ERROR
+from service.storage.trends.rows import NO_ERROR, row_count
 
 
 def test_readings_are_taken_once_in_their_order() -> None:
@@ -12,12 +12,17 @@ def test_readings_are_taken_once_in_their_order() -> None:
     taking.add(3, 1_000, 1.5, NO_ERROR)
     taking.add(0, 2_000, True, 7)
 
+    taking.add(3, 3_000, 2.5, NO_ERROR)
+
     rows = taking.take()
 
-    assert rows is not None
-    assert (rows.signal.tolist(), rows.first.tolist()) == ([3, 0], [1_000, 2_000])
-    assert (rows.final.tolist(), rows.error.tolist()) == ([1.5, 1.0], [NO_ERROR, 7])
-    assert taking.take() is None
+    assert {signal: own.first.tolist() for signal, own in rows.items()} == {
+        3: [1_000, 3_000],
+        0: [2_000],
+    }
+    assert (rows[3].final.tolist(), rows[3].error.tolist()) == ([1.5, 2.5], [NO_ERROR, NO_ERROR])
+    assert (rows[0].final.tolist(), rows[0].error.tolist()) == ([1.0], [7])
+    assert not taking.take()
 
 
 def test_while_nobody_takes_them_they_are_bounded_and_counted(
@@ -30,4 +35,8 @@ def test_while_nobody_takes_them_they_are_bounded_and_counted(
         taking.add(0, number, 0.0, NO_ERROR)
 
     assert taking.dropped == 2
-    assert len(taking.take() or ()) == 3
+    assert row_count(taking.take()) == 3
+
+    taking.add(0, 9, 0.0, NO_ERROR)
+
+    assert taking.dropped == 2

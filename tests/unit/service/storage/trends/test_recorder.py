@@ -32,7 +32,7 @@ class _Run:
 
     def record(self, rows: Rows, for_s: float = 5.0) -> None:
         """Record readings, and let time pass."""
-        self.recorder.add(rows, self.elapsed)
+        self.recorder.add({0: rows}, self.elapsed)
         self.elapsed += seconds(for_s)
         self.recorder.settle(self.elapsed)
 
@@ -46,7 +46,7 @@ class _Run:
         """Return how many readings the coarsest tier knows of."""
         self.recorder.settle(self.elapsed)
         load = self.known.by_name["load"]
-        return int(self.recorder.rows(len(TIERS) - 1, load, 0, 2**62).count.sum())
+        return sum(self.recorder.rows(len(TIERS) - 1, load, 0, 2**62).count)
 
     def kill(self) -> None:
         """End as by `kill -9`; what was committed is there."""
@@ -63,7 +63,7 @@ def folder(tmp_path: Path) -> Iterator[Path]:
 
 def test_what_was_not_yet_written_is_in_the_answer(folder: Path) -> None:
     run = _Run(folder)
-    run.recorder.add(readings([1.0, 9.0]), 0)
+    run.recorder.add({0: readings([1.0, 9.0])}, 0)
 
     assert [point.high for point in run.last_minutes(START + MINUTE)] == [1.0, 9.0]
     run.end()
@@ -84,8 +84,8 @@ def test_after_a_restart_each_tier_still_has_every_reading(way: str, folder: Pat
     for tier in range(len(TIERS)):
         rows = again.recorder.rows(tier, load, 0, 2**62)
         # Single readings are deleted after ten minutes.
-        assert rows.count.sum() == (15_100 if tier else 12_100), tier
-        assert rows.high.max() == 99.0
+        assert sum(rows.count) == (15_100 if tier else 12_100), tier
+        assert max(rows.high) == 99.0
     again.end()
 
 
@@ -132,7 +132,7 @@ def test_the_finest_tier_goes_first_when_time_goes_on(folder: Path) -> None:
     spans = []
     for tier in (0, 1):
         rows = run.recorder.rows(tier, load, 0, 2**62)
-        spans.append(round((rows.last.max() - rows.first.min()) / MINUTE))
+        spans.append(round((max(rows.last) - min(rows.first)) / MINUTE))
 
     assert 9 <= spans[0] <= 12
     assert spans[1] == 30
@@ -298,7 +298,7 @@ def test_a_file_that_the_first_version_wrote_can_be_read(folder: Path) -> None:
     assert run.readings() == 36_000
     for tier in range(len(TIERS)):
         rows = run.recorder.rows(tier, load, 0, 2**62)
-        assert (rows.high.max(), load.errors_of([rows.error.max()])) == (1600.0, ["LOAD_OVERLOAD"])
+        assert (max(rows.high), load.errors_of([max(rows.error)])) == (1600.0, ["LOAD_OVERLOAD"])
     run.end()
 
 

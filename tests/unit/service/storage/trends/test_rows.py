@@ -1,6 +1,7 @@
 """Readings are merged to rows, and rows to coarser ones."""
 
-import numpy as np
+import sys
+
 import pytest
 
 from domain.timebase import seconds
@@ -29,18 +30,6 @@ def test_the_worst_error_counts() -> None:
     assert error == 1
 
 
-def test_signals_are_not_mixed() -> None:
-    mixed = Rows.joined([readings([1.0, 2.0]), readings([8.0, 9.0], signal=3)])
-
-    rows = mixed.in_buckets(seconds(1.0))
-
-    assert [(number, own.high.tolist()) for number, own in rows.by_signal()] == [
-        (0, [2.0]),
-        (3, [9.0]),
-    ]
-    assert mixed.of_signal(3).low.tolist() == [8.0, 9.0]
-
-
 def test_the_last_reading_is_the_last_by_time_not_by_arrival() -> None:
     late, early = readings([5.0], START + seconds(0.9)), readings([1.0, 2.0])
 
@@ -48,15 +37,13 @@ def test_the_last_reading_is_the_last_by_time_not_by_arrival() -> None:
 
 
 def test_in_buckets_of_no_width_readings_are_only_sorted() -> None:
-    mixed = Rows.joined(
-        [readings([8.0], signal=3), readings([1.0, 2.0]), readings([9.0], signal=3)]
-    )
+    mixed = Rows.joined([readings([8.0], START + seconds(1.0)), readings([1.0, 2.0])])
 
-    assert mixed.in_buckets(0).low.tolist() == [1.0, 2.0, 8.0, 9.0]
+    assert mixed.in_buckets(0).low.tolist() == [1.0, 2.0, 8.0]
 
 
 def test_the_mean_of_the_largest_numbers_is_one() -> None:
-    largest = np.finfo(np.float64).max
+    largest = sys.float_info.max
 
     rows = readings([largest] * 20).in_buckets(seconds(1.0))
 
@@ -70,7 +57,13 @@ def test_the_mean_of_rows_is_that_of_all_their_readings() -> None:
 
 
 def test_nothing_is_merged_of_nothing() -> None:
-    nothing = Rows.joined([])
+    assert len(Rows.joined([]).in_buckets(seconds(1.0))) == 0
 
-    assert len(nothing.in_buckets(seconds(1.0))) == 0
-    assert [*nothing.by_signal()] == []
+
+def test_rows_that_overlap_a_time_are_seen_as_a_whole() -> None:
+    rows = readings(range(100)).in_buckets(seconds(1.0))
+
+    seen = rows.overlapping(START + seconds(1.5), START + seconds(3.0))
+
+    assert [first - START for first in seen.first] == [seconds(1.0), seconds(2.0), seconds(3.0)]
+    assert seen.count.tolist() == [20, 20, 20]
