@@ -9,9 +9,7 @@ told.
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats
 from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.controller import GoalOutcome
 from domain.errors import InvalidValueError
@@ -46,7 +44,7 @@ class WaypointGoal:
     @classmethod
     def checked(
         cls,
-        waypoints: NDArray[np.float64],
+        waypoints: Floats,
         start_index: int,
         speed_mps: float,
         limits: VehicleLimits,

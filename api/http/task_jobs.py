@@ -4,14 +4,11 @@ Arguments and results can be pickled, since the worker runs these functions.
 """
 
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from api.http.body_parsing import InvalidBodyError, MalformedBodyError, parse_body
 from api.http.schemas.path_preview import MAX_DRAWN, PathPreviewJson
 from api.http.schemas.tasks import TaskBody, WaypointJson, WaypointsJson
+from domain.arrays import Floats, Integers, np
 from domain.errors import InvalidValueError, UnknownControllerError
 from domain.paths.approach import ApproachLimits
 from domain.paths.headings import Heading
@@ -132,7 +129,7 @@ def _read_csv(raw: bytes, csv: TaskOptions, *, is_driven: bool) -> PostedTask:
     return PostedTask(path, csv.start_index, csv.controller, csv.speed_mps, file.reading)
 
 
-def encode_waypoints(waypoints: NDArray[np.float64], max_points: int | None) -> bytes:
+def encode_waypoints(waypoints: Floats, max_points: int | None) -> bytes:
     """Return waypoints as JSON.
 
     Args:
@@ -148,7 +145,7 @@ def encode_waypoints(waypoints: NDArray[np.float64], max_points: int | None) -> 
     )
 
 
-def thinned(count: int, max_points: int | None) -> NDArray[Any]:
+def thinned(count: int, max_points: int | None) -> Integers:
     """Return indices of at most `max_points` of `count` things, evenly spread."""
     if max_points is None or count <= max_points:
         return np.arange(count)

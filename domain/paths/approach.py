@@ -8,8 +8,7 @@ would be missing in the end.
 from dataclasses import dataclass
 from math import ceil, hypot, remainder, sqrt, tau
 
-import numpy as np
-
+from domain.arrays import np
 from domain.paths.dubins import DubinsCurve, shortest_curve
 from domain.paths.path import Path, Projection
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile

@@ -6,8 +6,7 @@ represent a digitized line", 1973; all pieces of a stretch are split at once.
 
 from itertools import pairwise
 
-import numpy as np
-from numpy.typing import NDArray
+from domain.arrays import Floats, Integers, np
 
 STRETCH = 2_000
 """Points that are looked at in one go: some 2 ms. Where one stretch ends and the next one begins, a
@@ -21,7 +20,7 @@ class Decimation:
     drawn as well as it can be; each stretch has its share of them.
     """
 
-    def __init__(self, places: NDArray[np.float64], tolerance_m: float, most: int) -> None:
+    def __init__(self, places: Floats, tolerance_m: float, most: int) -> None:
         """Prepare.
 
         Args:
@@ -38,7 +37,7 @@ class Decimation:
         self._share = (most - count - 1) / count
         """Points that each stretch may add to the ends; what one leaves is for those after it."""
         self._done = 0
-        self._inner: list[NDArray[np.int64]] = []
+        self._inner: list[Integers] = []
         self._spent = 0
 
     @property
@@ -47,7 +46,7 @@ class Decimation:
         return self._done == len(self._stretches)
 
     @property
-    def indices(self) -> NDArray[np.int64]:
+    def indices(self) -> Integers:
         """Return the indices of the points that are kept so far, in order."""
         return np.sort(np.concatenate((np.array(self._ends), *self._inner)))
 
@@ -59,7 +58,7 @@ class Decimation:
         self._spent += len(inner)
         self._inner.append(inner)
 
-    def _split(self, first: int, last: int, room: int) -> NDArray[np.int64]:
+    def _split(self, first: int, last: int, room: int) -> Integers:
         """Return the points of a stretch that are kept besides its ends."""
         firsts, lasts = np.array([first]), np.array([last])
         kept = [np.empty(0, dtype=np.int64)]
@@ -75,9 +74,7 @@ class Decimation:
             firsts, lasts = begins[is_open], ends[is_open]
         return np.concatenate(kept)
 
-    def _farthest(
-        self, firsts: NDArray[np.int64], lasts: NDArray[np.int64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def _farthest(self, firsts: Integers, lasts: Integers) -> tuple[Floats, Integers]:
         """Return how far the farthest point of each piece is from its chord, m2, and its index."""
         counts = lasts - firsts
         begins = np.cumsum(counts) - counts

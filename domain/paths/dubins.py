@@ -10,9 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import acos, atan2, ceil, cos, hypot, pi, sin, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, np
 from domain.vehicle import Pose
 
 _Word = tuple[tuple[int, int, int], tuple[float, float, float]]
@@ -40,7 +38,7 @@ class DubinsCurve:
         pieces = zip(self.turns, self.lengths_m, strict=True)
         return sum(length for turn, length in pieces if turn) / self.radius_m
 
-    def places(self, spacing_m: float) -> NDArray[np.float64]:
+    def places(self, spacing_m: float) -> Floats:
         """Return positions along the curve, from its start to its end.
 
         Args:
@@ -55,9 +53,7 @@ class DubinsCurve:
                 rows.append(self._piece(rows[-1][-1], turn, length, spacing_m))
         return np.concatenate(rows)
 
-    def _piece(
-        self, begin: NDArray[np.float64], turn: int, length_m: float, spacing_m: float
-    ) -> NDArray[np.float64]:
+    def _piece(self, begin: Floats, turn: int, length_m: float, spacing_m: float) -> Floats:
         count = ceil(length_m / spacing_m)
         along = np.linspace(0.0, length_m, count + 1)[1:]
         x, y, yaw = begin

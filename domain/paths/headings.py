@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import hypot, pi, tau
 
-import numpy as np
-from numpy.typing import NDArray
+from domain.arrays import Floats, Integers, np
 
 MAX_MISFIT_RAD = pi / 6
 """Headings whose median differs by more from the path are none, or in another unit."""
@@ -20,8 +19,6 @@ _ONE_TURN = 1.001
 """More is not a heading in radians, unless headings are unwrapped over several turns."""
 _MOST_TURNS = 100
 """Further unwrapped headings are none: a time in seconds soon has thousands of turns."""
-
-Floats = NDArray[np.float64]
 
 
 class Heading(StrEnum):
@@ -223,7 +220,7 @@ def _spread(angles: Floats) -> float:
     return float(np.median(np.abs(wrapped(angles - mean))))
 
 
-def _apart(places: Floats) -> NDArray[np.int64]:
+def _apart(places: Floats) -> Integers:
     """Return the indices of waypoints at least a chord apart, from the first one; shape (k,)."""
     extent = float(np.hypot(*(places - places[0]).T).max())
     chord = min(_CHORD_M, extent / 10)

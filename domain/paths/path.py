@@ -12,9 +12,7 @@ from dataclasses import dataclass
 from math import atan2, copysign, hypot, inf, pi, sqrt
 from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, Integers, np
 from domain.errors import InvalidValueError
 from domain.paths.waypoints import check_waypoints
 from domain.vehicle import Point, VehicleLimits
@@ -55,8 +53,7 @@ class Projection:
     """Heading of the path there."""
 
 
-_Array: TypeAlias = NDArray[np.float64]
-_State: TypeAlias = tuple[_Array, _Array, _Array, _Array, tuple[float, float], float]
+_State: TypeAlias = tuple[Floats, Floats, Floats, Floats, tuple[float, float], float]
 
 
 class Path:
@@ -65,7 +62,7 @@ class Path:
     Positions are kept relative to waypoint 0, so that coordinates of UTM cost no accuracy.
     """
 
-    def __init__(self, waypoints: NDArray[np.float64]) -> None:
+    def __init__(self, waypoints: Floats) -> None:
         """Prepare the geometry; 100,000 waypoints take some 40 ms.
 
         Args:
@@ -78,7 +75,7 @@ class Path:
         self._prepare(_checked(waypoints))
 
     @classmethod
-    def of_computed(cls, waypoints: NDArray[np.float64]) -> "Path":
+    def of_computed(cls, waypoints: Floats) -> "Path":
         """Return the line through computed waypoints.
 
         Those of a way onto a path may be beyond the range that given ones have.
@@ -90,7 +87,7 @@ class Path:
         cls._prepare(path, waypoints)
         return path
 
-    def _prepare(self, waypoints: NDArray[np.float64]) -> None:
+    def _prepare(self, waypoints: Floats) -> None:
         self.waypoints = waypoints
         """Shape (n, 3): x m, y m, yaw rad; read only."""
         waypoints.flags.writeable = False
@@ -209,7 +206,7 @@ class Path:
         turn = self.heading_at(distance_m + half) - self.heading_at(distance_m - half)
         return ((turn + pi) % (2 * pi) - pi) / (2 * half)
 
-    def curvatures_at(self, distances_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    def curvatures_at(self, distances_m: Floats) -> Floats:
         """Return `curvature_at` for many distances at once; shape (n,) each, 1/m."""
         half = CURVATURE_OVER_M * self._scale / 2
         turn = self._headings(distances_m + half) - self._headings(distances_m - half)
@@ -272,7 +269,7 @@ class Path:
             self._sum_y[k] + self._y[k] * ahead + self._uy[k] * half,
         )
 
-    def _headings(self, distances_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _headings(self, distances_m: Floats) -> Floats:
         """Return `heading_at` for many distances; shape (n,) each, rad."""
         at = distances_m[:, np.newaxis] + np.array([-1.0, 0.0, 1.0]) * (SMOOTHING_M * self._scale)
         k = np.maximum(self._along.searchsorted(at, side="right") - 1, 0)
@@ -285,7 +282,7 @@ class Path:
         return np.asarray(np.arctan2(way[:, 1], way[:, 0]))
 
 
-def _checked(waypoints: NDArray[np.float64]) -> NDArray[np.float64]:
+def _checked(waypoints: Floats) -> Floats:
     """Return a checked copy; shape (n, 3).
 
     Raises:
@@ -299,17 +296,17 @@ def _checked(waypoints: NDArray[np.float64]) -> NDArray[np.float64]:
     return rows
 
 
-def _numbers(column: NDArray[np.float64]) -> "array[float]":
+def _numbers(column: Floats) -> "array[float]":
     """Return an array whose single numbers are read several times faster than from numpy."""
     return array("d", column.tobytes())
 
 
-def _lengths(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _lengths(vectors: Floats) -> Floats:
     """Return the lengths of vectors; shape (n,) of shape (n, 2). Faster than `numpy.hypot`."""
     return np.asarray(np.sqrt(vectors[:, 0] ** 2 + vectors[:, 1] ** 2))
 
 
-def _places_apart(places: NDArray[np.float64]) -> NDArray[np.int64]:
+def _places_apart(places: Floats) -> Integers:
     """Return which waypoints are kept as positions; the first and the last always are.
 
     Args:
@@ -343,9 +340,7 @@ def _places_apart(places: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.array([*kept, last])
 
 
-def _way_of_the_end(
-    knots: NDArray[np.float64], along: NDArray[np.float64], ways: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _way_of_the_end(knots: Floats, along: Floats, ways: Floats) -> Floats:
     """Return the unit vector in which a path continues beyond its end; shape (2,).
 
     Args:

@@ -3,9 +3,7 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, np
 from domain.paths.approach import MAY_MISS_SHARE, Approach, ApproachLimits, plan_approach
 from domain.paths.path import Path
 from domain.paths.speed_profile import SpeedProfile
@@ -148,7 +146,7 @@ def _too_tight(radius_m: float, least_m: float, index: int) -> PathWarning:
     return PathWarning("TOO_TIGHT", message, index)
 
 
-def _spacing_warnings(distances: NDArray[np.float64]) -> list[PathWarning]:
+def _spacing_warnings(distances: Floats) -> list[PathWarning]:
     """Warn about waypoints that are far apart or coincide; distances in m, shape (n,)."""
     warnings = []
     widest = float(distances.max())
@@ -182,7 +180,7 @@ def _duration(
     path: Path,
     cruise_mps: float,
     limits: ApproachLimits,
-    at: NDArray[np.float64],
+    at: Floats,
 ) -> float:
     """Estimate the driving time from standstill to standstill, s."""
     profile = SpeedProfile(path, cruise_mps, limits.speed, limits.vehicle, float(at[1]))

@@ -8,9 +8,7 @@ path, after a pause; therefore navigation limits the rise of the command by `acc
 from dataclasses import dataclass
 from math import ceil, inf, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, np
 from domain.paths.path import Path
 from domain.vehicle import VehicleLimits
 
@@ -116,7 +114,7 @@ class SpeedProfile:
         ahead = np.minimum.accumulate((squares + gained)[::-1])[::-1] - gained
         self._first, self._squares = first, ahead[: last - first + 1].tolist()
 
-    def _bend_squares(self, first: int, last: int) -> NDArray[np.float64]:
+    def _bend_squares(self, first: int, last: int) -> Floats:
         """Return the squares of the limits because of bends alone, from sample to sample, m2/s2."""
         margin = TURN_OVER_STEPS[-1]
         begin, end = max(first - margin, 0), min(last + margin, self._steps)
@@ -130,9 +128,7 @@ class SpeedProfile:
         return squares[first - begin : last - begin + 1]
 
 
-def _turning_squares(
-    curvatures: NDArray[np.float64], step_m: float, vehicle: VehicleLimits
-) -> NDArray[np.float64]:
+def _turning_squares(curvatures: Floats, step_m: float, vehicle: VehicleLimits) -> Floats:
     """Return the squares of the speeds at which the front wheels turn in time, m2/s2.
 
     Args:

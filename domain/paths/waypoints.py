@@ -1,8 +1,6 @@
 """Limits on the waypoints of a path: number and range."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, np
 from domain.errors import InvalidValueError
 
 MAX_WAYPOINTS = 100_000
@@ -11,7 +9,7 @@ MAX_COORDINATE_M = 1e7
 COLUMNS = ("x_m", "y_m", "yaw_rad")
 
 
-def check_waypoints(waypoints: NDArray[np.float64]) -> None:
+def check_waypoints(waypoints: Floats) -> None:
     """Reject waypoints that cannot be a path.
 
     Args:

@@ -7,8 +7,7 @@ import heapq
 from dataclasses import dataclass
 from typing import Generic, NamedTuple, TypeVar
 
-import numpy as np
-
+from domain.arrays import np
 from domain.computers import ComputerName
 from domain.timebase import Duration, Instant, seconds
 

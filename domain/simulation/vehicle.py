@@ -11,8 +11,7 @@ import math
 from collections import deque
 from dataclasses import replace
 
-import numpy as np
-
+from domain.arrays import np
 from domain.inputs import VehicleReport
 from domain.simulation.vehicle_settings import (
     WEAK_BRAKING_MPS2,

@@ -9,8 +9,7 @@ Source: smart_polaris, `task_planner_node.py`.
 
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
+from domain.arrays import np
 from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.errors import (
     FarStartError,

@@ -3,8 +3,7 @@
 from math import ceil, hypot
 from typing import TypeAlias
 
-import numpy as np
-
+from domain.arrays import np
 from domain.paths.path import Path
 from domain.timebase import to_seconds
 from domain.vehicle import COMMAND_VALID_FOR, VehicleState

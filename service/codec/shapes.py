@@ -8,8 +8,7 @@ from enum import StrEnum
 from functools import cache
 from typing import Any
 
-import numpy as np
-
+from domain.arrays import np
 from domain.errors import InvalidValueError, shortened
 from domain.paths.path import Path
 from service.codec.errors import CodecError

@@ -3,9 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, np
 from domain.findings import Finding
 from domain.paths.waypoints import MAX_COORDINATE_M, MAX_WAYPOINTS
 from service.files.csv_dialect import has_decimal_comma, is_number, number_in
@@ -18,8 +16,6 @@ from service.files.csv_table import (
     shown,
     too_many_points,
 )
-
-Floats = NDArray[np.float64]
 
 _LARGEST = 1e20
 """A time in ns is less, and its square is finite."""

@@ -5,8 +5,7 @@ Recognised by what the first rows hold, for files that do not name their columns
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
+from domain.arrays import Floats, np
 
 ROWS = 200
 COLUMNS = 12
@@ -20,8 +19,6 @@ _FAR = 100.0
 _ENOUGH = 0.9
 _STEP_M = 0.02
 _SOME_ROWS = 10
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,7 @@ read, and checked against the path.
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, np
 from domain.paths.headings import Fit, Heading, Ways, along, wrapped
 from domain.paths.preview import PathWarning
 from service.files.csv_columns import (
@@ -33,8 +31,6 @@ from service.files.csv_table import (
     refused,
     shown,
 )
-
-Floats = NDArray[np.float64]
 
 _NO_ROTATION = 1e-6
 _QUATERNION = (Heading.RAD,)

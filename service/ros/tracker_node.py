@@ -9,8 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-import numpy as np
-
+from domain.arrays import np
 from domain.commands import Drive
 from domain.controller import GoalOutcome
 from domain.goal_server import (

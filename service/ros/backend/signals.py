@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-import numpy as np
-
+from domain.arrays import np
 from domain.errors import InvalidValueError
 from domain.health.signals import SignalKind, SignalSpec
 from domain.inputs import Reading, Readings, SignalValue

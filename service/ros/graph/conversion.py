@@ -12,8 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any, TypeAlias
 
-import numpy as np
-
+from domain.arrays import np
 from domain.errors import InvalidValueError
 from service.ros.graph.graph import Fields, Message, UnknownFieldError, UnknownTypeError
 
@@ -29,7 +28,7 @@ _STRING = re.compile(r"w?string(?:<(?P<most>\d+)>)?")
 _INTEGER = re.compile(r"(?P<unsigned>u?)int(?P<bits>8|16|32|64)")
 Check: TypeAlias = Callable[[object, str], Any]
 """Takes a value and the path to it, and returns the value for the field."""
-_LARGEST = {"float": float(np.finfo(np.float32).max), "double": math.inf}
+_LARGEST = {"float": (2 - 2**-23) * 2.0**127, "double": math.inf}
 
 
 def find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS, which has no types of ours

@@ -2,9 +2,7 @@
 
 from math import cos, sin
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, Integers, np
 from domain.paths.decimation import Decimation
 from domain.paths.path import Path
 from domain.snapshot import TaskView
@@ -31,7 +29,7 @@ class DrawnPath:
         self._decimation = Decimation(places, TOLERANCE_M, MOST_POINTS)
         self._points: list[Fields] = []
         self._headings: list[float] = []
-        self._distances: NDArray[np.float64] = np.empty(0)
+        self._distances: Floats = np.empty(0)
 
     @property
     def is_done(self) -> bool:
@@ -44,7 +42,7 @@ class DrawnPath:
         if self._decimation.is_done:
             self._take(self._decimation.indices + self._first)
 
-    def _take(self, kept: NDArray[np.int64]) -> None:
+    def _take(self, kept: Integers) -> None:
         places = self._path.waypoints[kept, :2]
         ways = np.diff(places, axis=0)
         headings = np.arctan2(ways[:, 1], ways[:, 0]).tolist()

@@ -6,9 +6,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from domain.arrays import Floats, np
 from domain.errors import InvalidValueError
 from domain.paths.path import Path
 from domain.paths.waypoints import COLUMNS, MAX_WAYPOINTS
@@ -51,7 +49,7 @@ def check_count(waypoints: Sequence[object]) -> None:
         raise InvalidValueError(message, "waypoints")
 
 
-def rows_of(waypoints: Sequence[object]) -> NDArray[np.float64]:
+def rows_of(waypoints: Sequence[object]) -> Floats:
     """Return waypoints of a message as rows, shape (n, 3): x m, y m, yaw rad.
 
     A field that is left out is an error, as over HTTP: its ROS default would be a place.
