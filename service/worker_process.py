@@ -121,6 +121,7 @@ def do(job: Any) -> Reply:  # noqa: ANN401  # whatever `service.worker` sent
     Raises:
         MemoryError: The job needs more memory than allowed. The process must end, since its state
             is unknown.
+        ImportError: The same, of a library that the job was the first to use.
     """
     function, arguments = job
     try:
@@ -129,7 +130,9 @@ def do(job: Any) -> Reply:  # noqa: ANN401  # whatever `service.worker` sent
         return Reply("refused", ErrorParcel.of(error))
     except MemoryError:
         raise
-    except Exception:
+    except Exception as error:
+        if isinstance(error, ImportError) and _is_short_of_memory(error):
+            raise
         # The edge of this process: the caller gets the traceback of a bug in its job.
         return Reply("failed", traceback.format_exc())
 

@@ -2,6 +2,8 @@
 
 import ast
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,6 +18,24 @@ NOT_OURS = {"__pycache__", "build", "dist", "mutants", "node_modules"}
 REGISTRY = re.compile(
     r"pypi\.org|pythonhosted\.|npmjs\.|--(?:extra-)?index-url|--find-link[s]|--trusted-hos[t]"
 )
+
+THESE_LOAD_NUMPY = {
+    # When a profile is analysed.
+    "api/cli/profile_run.py",
+    "api/profiling/analysis.py",
+    "api/profiling/plot.py",
+    "api/profiling/report.py",
+    # By rclpy, which need not be there.
+    "service/ros/graph/link.py",
+}
+# Prints the first module that loads it.
+IMPORTS = """
+import importlib, sys
+for name in sys.argv[1:]:
+    importlib.import_module(name)
+    if "numpy" in sys.modules:
+        sys.exit(print(name))
+"""
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -64,6 +84,26 @@ def test_every_module_that_does_something_has_a_test_file_in_the_same_place() ->
     ]
 
     assert not untested, _names(untested)
+
+
+def test_no_module_loads_numpy_when_it_is_imported() -> None:
+    # A robot at rest needs none of it: `domain.arrays` loads it when it is used.
+    names = [
+        ".".join(module.relative_to(PROJECT).with_suffix("").parts)
+        for package in ("domain", "service", "api")
+        for module in _modules(package)
+        if module.relative_to(PROJECT).as_posix() not in THESE_LOAD_NUMPY
+    ]
+    done = subprocess.run(
+        [sys.executable, "-c", IMPORTS, *names],
+        cwd=PROJECT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.stdout == ""
+    assert done.returncode == 0, done.stderr
 
 
 def _test_file_of(module: Path) -> Path:

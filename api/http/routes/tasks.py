@@ -33,6 +33,7 @@ from domain.paths.headings import Heading
 from domain.tracking.trackers import TRACKERS
 from service.files.csv_columns import column_names
 from service.files.driving_block import DEFAULT_CONTROLLER, DEFAULT_SPEED_MPS
+from service.numpy_loading import numpy_loaded
 from service.worker import Jobs
 
 router = APIRouter(prefix="/tasks", tags=["drive"])
@@ -238,6 +239,7 @@ async def get_waypoints(
 
 
 async def _read(raw: bytes, csv: TaskOptions | None, worker: Jobs) -> PostedTask:
+    await numpy_loaded()
     if len(raw) <= _MAX_BYTES_HERE:
         return read_posted_task(raw, csv)
     return await worker.call(read_posted_task, raw, csv)

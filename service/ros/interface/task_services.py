@@ -12,6 +12,7 @@ from domain.paths.path import Path
 from service.files.csv_table import InvalidWaypointsError
 from service.files.driving_block import DEFAULT_CONTROLLER, DEFAULT_SPEED_MPS
 from service.files.waypoint_folder import WaypointFolder, check_name
+from service.numpy_loading import numpy_loaded
 from service.ros.interface.endpoints import OWN_NODE, Fields, OfferedService
 from service.ros.interface.message_check import DRIVE_WAYPOINTS, START_TASK, checked
 from service.ros.interface.waypoint_jobs import check_count, read_track, rows_of
@@ -84,6 +85,7 @@ class TaskServices:
             if self._folder is None:
                 raise NoWaypointFolderError
             check_name(name)
+            await numpy_loaded()
             track = await self._jobs.call(read_track, self._folder, name)
             response = await self._begin(track.path, asked, caller)
         except PilothouseError as error:
@@ -98,6 +100,7 @@ class TaskServices:
         waypoints = asked["waypoints"]
         try:
             check_count(waypoints)
+            await numpy_loaded()
             if len(waypoints) <= _HERE:
                 path = Path(rows_of(waypoints))
             else:

@@ -30,6 +30,10 @@ def run_out_of_memory() -> None:
     raise MemoryError
 
 
+def load_a_library(why_not: str) -> None:
+    raise ImportError(why_not)
+
+
 def sent(message: object) -> bytes:
     return b"".join(pack(message))
 
@@ -85,6 +89,13 @@ def test_a_refusal_and_a_fault_are_told_apart() -> None:
 def test_a_process_without_memory_does_not_go_on() -> None:
     with pytest.raises(MemoryError):
         do((run_out_of_memory, ()))
+
+
+def test_nor_does_one_without_memory_for_a_library_that_a_job_is_the_first_to_use() -> None:
+    with pytest.raises(ImportError):
+        do((load_a_library, ("libblas.so: failed to map segment from shared object",)))
+
+    assert do((load_a_library, ("No module named 'blas'",))).outcome == "failed"
 
 
 def test_an_error_arrives_with_its_facts() -> None:

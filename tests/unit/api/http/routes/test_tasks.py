@@ -1,5 +1,6 @@
 """`/tasks` as an operator uses it."""
 
+import threading
 from math import pi
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 
 from service.files.waypoint_file import read_waypoints_csv
 from tests.support.http_robot import HttpRobot
+from tests.support.numpy_loads import numpy_not_loaded
 
 CSV = {"Content-Type": "text/csv"}
 LINE = "".join(f"{x},0,0\n" for x in range(11))
@@ -76,6 +78,27 @@ async def test_a_large_task_goes_through_the_worker_and_is_the_same(robot: HttpR
 
     assert task["waypoint_count"] == 3_000
     assert task["length_m"] == pytest.approx(29.99)
+
+
+@pytest.mark.parametrize("points", [11, 3_000])
+async def test_the_first_task_makes_a_thread_load_numpy(robot: HttpRobot, points: int) -> None:
+    csv = "".join(f"{x},0,0\n" for x in range(points))
+    with numpy_not_loaded() as numpy:
+        answers = [await post(robot, csv) for _ in range(2)]
+
+    assert [answer.status_code for answer in answers] == [201, 201]
+    (thread,) = numpy.threads
+    assert thread is not threading.current_thread()
+
+
+async def test_a_robot_that_is_only_watched_needs_no_numpy(robot: HttpRobot) -> None:
+    with numpy_not_loaded() as numpy:
+        await robot.get("/tasks")
+        preview = await robot.http.post("/tasks/preview", content=LINE, headers=CSV)
+        await robot.http.delete("/tasks/current")
+
+    assert preview.status_code == 200
+    assert numpy.threads == []
 
 
 async def test_a_compass_is_converted_when_told(robot: HttpRobot) -> None:

@@ -1,6 +1,7 @@
 """The task planner over ROS: a file or waypoints are driven, held, and cancelled."""
 
 import logging
+import threading
 from collections.abc import AsyncIterator
 from pathlib import Path as FilePath
 from typing import Any
@@ -12,6 +13,7 @@ from domain.inputs import HoldRequest
 from domain.snapshot import TaskView
 from service.files.waypoint_folder import WaypointFolder
 from service.ros.interface.settings import InterfaceSettings
+from tests.support.numpy_loads import numpy_not_loaded
 from tests.support.ros_robot import OPERATOR, RosRobot, running_ros_robot
 
 LINE = "0,0,0\n5,0,0\n20,0,0\n"
@@ -60,6 +62,20 @@ async def test_a_file_is_driven_from_its_start_to_its_end(robot: RosRobot) -> No
     # No task, running, no task.
     assert [a for a, b in zip(told, [None, *told], strict=False) if a != b] in ([2, 0], [0, 2, 0])
     assert audited(robot) == [(SERVE, 200, OPERATOR.label)]
+
+
+@pytest.mark.parametrize(
+    ("service", "request_"), [(SERVE, {"file": "line.csv"}), (DRIVE, {"waypoints": WAYPOINTS})]
+)
+async def test_the_first_task_makes_a_thread_load_numpy(
+    robot: RosRobot, service: str, request_: dict[str, Any]
+) -> None:
+    with numpy_not_loaded() as numpy:
+        responses = [await robot.call(service, request_) for _ in range(2)]
+
+    assert [response["task"] for response in responses] == ["t1", "t2"]
+    (thread,) = numpy.threads
+    assert thread is not threading.current_thread()
 
 
 async def test_waypoints_are_driven_as_the_request_says(robot: RosRobot) -> None:
