@@ -35,7 +35,7 @@ READY_WITHIN_S = 20.0
 SETTLE_S = 5.0
 REST_S = 20.0
 RSS_MB = 95.0
-MORE = "The RSS is more than required: Python with FastAPI, uvicorn and numpy alone takes 60 MB."
+MORE = "The RSS is more than required: Python with FastAPI and uvicorn alone takes 45 MB."
 ROBOT = "actuation"
 """Name of the example robot."""
 
