@@ -34,7 +34,9 @@ def test_endpoints_and_files_are_read() -> None:
     assert link.certificate == "/etc/pilothouse/{name}.pem"
 
 
-@pytest.mark.parametrize("endpoint", ["", "7447", "http/10.0.0.1:80", "tcp/", "tcp/a b:1"])
+@pytest.mark.parametrize(
+    "endpoint", ["", "7447", "http/10.0.0.1:80", "tcp/", "tcp/a b:1", "quic/" + "a" * 241]
+)
 def test_what_is_no_endpoint_is_refused_where_it_stands(endpoint: str) -> None:
     assert fault(listen=[endpoint]).startswith("listen.0: ")
 
