@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 from functools import cache, partial
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from fastapi import APIRouter, FastAPI
 from starlette.middleware import Middleware
@@ -90,31 +90,27 @@ _RESOURCES = (
     service_health.router,
 )
 
-# "default" keeps the framework from describing an answer that is never given.
-_A_PROBLEM: dict[int | str, dict[str, Any]] = {"default": {"description": "A problem"}}
-
 
 @cache
 def _resources() -> list[BaseRoute]:
     """Return the routes of all resources, which the applications of this process share.
 
-    FastAPI analyses the routes of a router anew for each application that includes it; each
-    simulation has one.
+    FastAPI analyses the routes of a router anew where it is included, and keeps both: so only those
+    are included that are there with several prefixes.
     """
-    router = APIRouter(responses=_A_PROBLEM)
-    for resource in _RESOURCES:
-        router.include_router(resource)
-    router.include_router(announcing.part_router, prefix="/devices", tags=["devices"])
+    routes = [route for resource in _RESOURCES for route in resource.routes]
+    of_parts = APIRouter()
+    of_parts.include_router(announcing.part_router, prefix="/devices", tags=["devices"])
     for prefix in ("systems", "nodes"):
-        of_parts = (
+        resources = (
             announcing.part_router,
             error_reports.part_router,
             reactions.part_router,
             parts.router,
         )
-        for resource in of_parts:
-            router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
-    return [RouteTable(router.routes)]
+        for resource in resources:
+            of_parts.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
+    return [RouteTable([*routes, *of_parts.routes])]
 
 
 Lifespan: TypeAlias = Callable[[FastAPI], AbstractAsyncContextManager[None]]
@@ -149,7 +145,6 @@ def create_robot_app(
         redoc_url=None,
         redirect_slashes=False,
         lifespan=lifespan,
-        responses=_A_PROBLEM,
         routes=_resources(),
         middleware=_inner_gates(supervisor.clock),
     )

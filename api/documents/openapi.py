@@ -22,6 +22,10 @@ _REFERENCE = "#/components/schemas/{model}"
 _PROBLEM = {"$ref": _REFERENCE.format(model=Problem.__name__)}
 _ANY_PROBLEM = {"$ref": "#/components/responses/Problem"}
 
+_NEVER_GIVEN = "422"
+"""How the framework would answer what is invalid; here that is a problem."""
+_OF_NEVER_GIVEN = ("HTTPValidationError", "ValidationError")
+
 _READ_BY_ROUTES = (InferenceBody, TaskBody, SimulationBody)
 """Bodies that routes read themselves, so that the framework does not know them."""
 
@@ -63,6 +67,8 @@ def operations_of(document: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, 
 
 def _add_components(components: dict[str, Any]) -> None:
     schemas = components["schemas"]
+    for name in _OF_NEVER_GIVEN:
+        schemas.pop(name, None)
     for kind in (Problem, *_READ_BY_ROUTES):
         schema = kind.model_json_schema(ref_template=_REFERENCE)
         schemas.update(schema.pop("$defs", {}))
@@ -86,6 +92,7 @@ def _describe_operation(operation: dict[str, Any]) -> None:
     operation["description"] = "\n\n".join(paragraphs)
     operation["summary"] = _first_clause(paragraphs[0])
     responses = operation["responses"]
+    responses.pop(_NEVER_GIVEN, None)
     responses["default"] = _ANY_PROBLEM
     for status, response in responses.items():
         if status.startswith(("4", "5")):
