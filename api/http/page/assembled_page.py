@@ -44,10 +44,18 @@ class AssembledPage:
     """Names of the styles and scripts that the first use needs."""
 
 
+def sources() -> Mapping[str, str]:
+    """Return the texts of the files as they are written, by path below `web/`."""
+    return {path: entry.read_text(encoding="utf-8") for path, entry in written_files().items()}
+
+
 @cache
-def sources() -> Mapping[str, PageFile]:
-    """Return the files as they are written, by path below `web/`."""
-    return dict(_read_all(files("web"), ""))
+def written_files() -> Mapping[str, Traversable]:
+    """Return the files as they are written, by path below `web/`.
+
+    Where they are, and not what is in them: nearly all requests are for the bundles.
+    """
+    return dict(_find_all(files("web"), ""))
 
 
 @cache
@@ -57,8 +65,7 @@ def assembled_page() -> AssembledPage:
     Raises:
         PageError: A file cannot be bundled.
     """
-    texts = {path: file.content.decode() for path, file in sources().items()}
-    return assemble(texts, lambda bundles: kept(bundles) or minified(bundles))
+    return assemble(sources(), lambda bundles: kept(bundles) or minified(bundles))
 
 
 def assemble(texts: Mapping[str, str], shorten: Shorten = lambda texts: texts) -> AssembledPage:
@@ -126,10 +133,9 @@ def _digest(texts: list[str]) -> str:
     return hashlib.sha256("\n".join(texts).encode()).hexdigest()[:12]
 
 
-def _read_all(folder: Traversable, path: str) -> Iterator[tuple[str, PageFile]]:
+def _find_all(folder: Traversable, path: str) -> Iterator[tuple[str, Traversable]]:
     for entry in folder.iterdir():
-        media_type = MEDIA_TYPES.get(PurePosixPath(entry.name).suffix)
         if entry.is_dir():
-            yield from _read_all(entry, f"{path}{entry.name}/")
-        elif media_type is not None:
-            yield f"{path}{entry.name}", PageFile.of(entry.read_bytes(), media_type)
+            yield from _find_all(entry, f"{path}{entry.name}/")
+        elif PurePosixPath(entry.name).suffix in MEDIA_TYPES:
+            yield f"{path}{entry.name}", entry

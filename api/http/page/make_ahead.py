@@ -13,8 +13,7 @@ from api.http.page.minifier import minified
 
 def main() -> int:
     """Keep what the library makes of the page; return the exit code."""
-    texts = {path: source.content.decode() for path, source in sources().items()}
-    made = assemble(texts, _shorten)
+    made = assemble(sources(), _shorten)
     print(f"the page {made.version} is minified")
     return 0
 

@@ -5,13 +5,14 @@ Only files found at the start can be requested, so that no path can leave the pa
 
 from functools import cache
 from http import HTTPStatus
+from pathlib import PurePosixPath
 
 from fastapi import APIRouter, Request, Response
 from starlette.exceptions import HTTPException
 
-from api.http.page.assembled_page import assembled_page, sources
+from api.http.page.assembled_page import assembled_page, written_files
 from api.http.page.front_page import FirstFrames, FrontPage
-from api.http.page.page_file import KEEP, PageFile, answer_with
+from api.http.page.page_file import KEEP, MEDIA_TYPES, PageFile, answer_with
 from api.http.route_policy import Permission, policy
 
 
@@ -41,9 +42,16 @@ def page_routes(first_frames: FirstFrames) -> APIRouter:
     @router.get("/web/{path:path}")
     @policy(Permission.READ_PUBLIC)
     async def get_file(path: str, request: Request) -> Response:
-        return answer_with(_there(sources().get(path)), request)
+        return answer_with(_there(_written(path)), request)
 
     return router
+
+
+def _written(path: str) -> PageFile | None:
+    entry = written_files().get(path)
+    if entry is None:
+        return None
+    return PageFile.of(entry.read_bytes(), MEDIA_TYPES[PurePosixPath(path).suffix])
 
 
 def _there(file: PageFile | None) -> PageFile:
