@@ -52,7 +52,7 @@ def encode_description(app: FastAPI) -> bytes:
 
 def keep_description(app: FastAPI, encoded: bytes) -> None:
     """Answer with a description that was encoded before."""
-    app.state.openapi_file = PageFile.of(encoded, "application/json")
+    app.state.openapi_file = PageFile.of(encoded, "application/json", compressed=True)
 
 
 @router.get("/docs")
@@ -89,7 +89,7 @@ async def get_asyncapi(request: Request) -> Response:
 
 def keep_stream_description(app: FastAPI, encoded: bytes) -> None:
     """Answer with a description of the stream that was encoded before."""
-    app.state.asyncapi_file = PageFile.of(encoded, "application/json")
+    app.state.asyncapi_file = PageFile.of(encoded, "application/json", compressed=True)
 
 
 @cache

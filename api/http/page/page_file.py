@@ -26,20 +26,26 @@ _LEVEL = 9
 class PageFile:
     """A file with its tag."""
 
-    content: bytes
+    stored: bytes
+    """In the form in which it is kept in memory."""
     media_type: str
     etag: str
     """Weak, since it is the same for both forms of the content."""
-    gzipped: bytes | None = None
-    """Compressed once; None: it is sent as it is."""
+    compressed: bool = False
+    """Whether it is kept compressed: browsers take it so, and the few others wait a millisecond."""
 
     @classmethod
     def of(cls, content: bytes, media_type: str, *, compressed: bool = False) -> "PageFile":
         """Return a file with the tag of its content."""
         etag = f'W/"{hashlib.sha256(content).hexdigest()[:16]}"'
         # Without the time, so that the same content has the same bytes.
-        gzipped = gzip.compress(content, _LEVEL, mtime=0) if compressed else None
-        return cls(content, media_type, etag, gzipped)
+        stored = gzip.compress(content, _LEVEL, mtime=0) if compressed else content
+        return cls(stored, media_type, etag, compressed)
+
+    @property
+    def content(self) -> bytes:
+        """Return what is in the file."""
+        return gzip.decompress(self.stored) if self.compressed else self.stored
 
 
 def answer_with(file: PageFile, request: Request, cache_control: str = ASK_AGAIN) -> Response:
@@ -51,15 +57,15 @@ def answer_with(file: PageFile, request: Request, cache_control: str = ASK_AGAIN
         cache_control: How long a browser may do without asking.
     """
     headers = {"ETag": file.etag, "Cache-Control": cache_control}
-    if file.gzipped is not None:
+    if file.compressed:
         headers["Vary"] = "Accept-Encoding"
     known = [_opaque(tag) for tag in request.headers.get("if-none-match", "").split(",")]
     if _opaque(file.etag) in known:
         return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
-    if file.gzipped is None or not reads_gzip(request):
+    if not file.compressed or not reads_gzip(request):
         return Response(file.content, headers=headers, media_type=file.media_type)
     headers["Content-Encoding"] = "gzip"
-    return Response(file.gzipped, headers=headers, media_type=file.media_type)
+    return Response(file.stored, headers=headers, media_type=file.media_type)
 
 
 def reads_gzip(request: Request) -> bool:

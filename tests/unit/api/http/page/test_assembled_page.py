@@ -35,7 +35,7 @@ FILES = {
 
 
 def sizes() -> dict[str, int]:
-    return {name: len(file.gzipped or b"") for name, file in assembled_page().files.items()}
+    return {name: len(file.stored) for name, file in assembled_page().files.items()}
 
 
 def test_the_first_use_needs_few_files_that_each_arrive_at_once() -> None:
