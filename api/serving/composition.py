@@ -5,7 +5,7 @@ import os
 import secrets
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from api.app import make_worker
 from api.distribution import installed_version
@@ -41,9 +41,6 @@ from service.link.supervisor_end import RemoteNodes, SupervisorEnd
 from service.onboard_parts import make_onboard
 from service.ports import NodeBackend, RobotBackend, SignalSource
 from service.processes.from_settings import make_processes
-from service.ros.backend.backend import Ros2Backend
-from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
-from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
 from service.ros.interface.message_sets import MessageSet
@@ -62,6 +59,10 @@ from service.storage.sqlite.opening import StoreSettings
 from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 from service.worker import Worker
+
+if TYPE_CHECKING:
+    from service.ros.backend.backend import Ros2Backend
+    from service.ros.gateway import RosGateway
 
 log = logging.getLogger(__name__)
 
@@ -102,7 +103,7 @@ class Composition:
 
     supervisor: Supervisor
     limits: ServiceLimits
-    gateway: RosGateway | None = None
+    gateway: "RosGateway | None" = None
     """Offers the robot to ROS 2; None: its nodes are simulated."""
     simulated: SimulatedParts | None = None
     """The simulated robot, which a simulation can copy; None: the robot is real, or only a part of
@@ -276,6 +277,10 @@ def _with_ros2(
     options: ServeOptions, files: RobotFiles, clock: Clock, stores: Stores
 ) -> Composition:
     """Reach real nodes; signals are mocked only on request."""
+    # Imported here: they take 0.6 MB, and a simulated robot does without them.
+    from service.ros.backend.backend import Ros2Backend
+    from service.ros.gateway import RosGateway
+
     share, robot = files.share, files.share.local_robot
     mocked = options.mock_signals or robot.mock is True
     now = clock.now()
@@ -335,7 +340,7 @@ def _link_of(
 def _with_sources(
     files: RobotFiles,
     clock: Clock,
-    backend: SimulatedBackend | Ros2Backend,
+    backend: "SimulatedBackend | Ros2Backend",
     signals: tuple[SignalSource, ...],
     link: SupervisorEnd | DeviceEnd | None,
 ) -> tuple[RobotBackend, tuple[SourceStatus, ...]]:
@@ -365,6 +370,8 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
         UnknownTypeError: A type is not installed.
         UnknownFieldError: A type does not have the field for the value of a signal.
     """
+    from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
+
     named = [signal.type for signal in topics.signals.values()]
     named += [statistic.type for statistic in topics.statistics.values()]
     if topics.command is not None:

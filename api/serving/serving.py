@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, take_token
 from api.app import create_app, prepare
@@ -50,12 +51,14 @@ from service.clock import continuous_clock
 from service.files.model_file import EXAMPLE
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.ros.gateway import RosGateway
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
 from service.start_task import StartTaskError
 from service.storage.errors import FolderInUseError, UnusableFolderError
 from service.supervisor import Supervisor
+
+if TYPE_CHECKING:
+    from service.ros.gateway import RosGateway
 
 log = logging.getLogger(__name__)
 
@@ -350,7 +353,7 @@ async def _serve_until(
         raise TaskFailedError("web server")
 
 
-async def _offer(gateway: RosGateway) -> None:
+async def _offer(gateway: "RosGateway") -> None:
     """Offer the robot to ROS 2; ending is a failure, as for any task."""
     await gateway.offer()
     await gateway.run()
