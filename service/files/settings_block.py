@@ -15,7 +15,8 @@ class SettingsBlock(BaseModel):
     The texts below its attributes are read by `docs.generate`.
     """
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+    # Nearly all blocks are only read as a part of the whole file, whose validator has theirs.
+    model_config = ConfigDict(defer_build=True, strict=True, extra="forbid", frozen=True)
 
 
 def bare_names(named: Mapping[str, Any]) -> dict[str, Any]:
