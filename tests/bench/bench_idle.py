@@ -25,6 +25,8 @@ SETTLE_S = 3.0
 """In the first second the robot comes up."""
 SECONDS = 10.0
 STARTS = 5
+RSS_MB = 90.0
+MORE = "The RSS is more than required: see decision 64."
 READY_WITHIN_S = 20.0
 ECHO = module("tests.support.echo_app")
 
@@ -49,7 +51,8 @@ def test_what_an_idle_service_costs() -> None:
         "idle FastAPI service is the reference. RSS is that of the service process; `of all` would "
         "include a worker process, which exists from the first posted model or path on.",
         rows,
-        asked="less than 90 MB RSS and less than 5 % of a core with one page open.",
+        asked=f"less than {RSS_MB:g} MB RSS and less than 5 % of a core with one page open.",
+        notes=[MORE] if rows["one page"]["RSS_mb"] >= RSS_MB else [],
     )
     assert seen.lost == 0
 
