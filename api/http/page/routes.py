@@ -3,6 +3,7 @@
 Only files found at the start can be requested, so that no path can leave the package.
 """
 
+from asyncio import to_thread
 from functools import cache
 from http import HTTPStatus
 from pathlib import PurePosixPath
@@ -42,16 +43,20 @@ def page_routes(first_frames: FirstFrames) -> APIRouter:
     @router.get("/web/{path:path}")
     @policy(Permission.READ_PUBLIC)
     async def get_file(path: str, request: Request) -> Response:
-        return answer_with(_there(_written(path)), request)
+        # The loop waits for no disk, nor for a path that is none.
+        is_known = path in written_files()
+        return answer_with(_there(await to_thread(_read, path) if is_known else None), request)
 
     return router
 
 
-def _written(path: str) -> PageFile | None:
-    entry = written_files().get(path)
-    if entry is None:
+def _read(path: str) -> PageFile | None:
+    """Return a file as it is written; None: it was removed since the start."""
+    try:
+        content = written_files()[path].read_bytes()
+    except FileNotFoundError:
         return None
-    return PageFile.of(entry.read_bytes(), MEDIA_TYPES[PurePosixPath(path).suffix])
+    return PageFile.of(content, MEDIA_TYPES[PurePosixPath(path).suffix])
 
 
 def _there(file: PageFile | None) -> PageFile:

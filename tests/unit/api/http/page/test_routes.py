@@ -2,10 +2,13 @@
 
 import json
 import re
+import threading
+from pathlib import Path
 
 import pytest
 
 from api.http.access import Access
+from api.http.page import routes
 from api.http.page.assembled_page import assembled_page
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.websocket import WebSocketClient
@@ -69,6 +72,33 @@ async def test_a_page_knows_its_version_and_the_stream_tells_that_of_the_service
         hello = await client.frame("hello")
 
     assert f'<meta name="page-version" content="{hello["page_version"]}">' in page
+
+
+async def test_a_file_is_read_beside_the_loop_when_it_is_asked_for(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    readers = []
+
+    class Slow:
+        def read_bytes(self) -> bytes:
+            readers.append(threading.current_thread())
+            return b"// as it is written"
+
+    monkeypatch.setattr(routes, "written_files", lambda: {"js/slow.js": Slow()})
+
+    answer = await robot.http.get("/web/js/slow.js")
+
+    assert (answer.status_code, answer.text) == (200, "// as it is written")
+    (reader,) = readers
+    assert reader is not threading.current_thread()
+
+
+async def test_a_file_that_was_removed_since_the_start_is_not_there(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(routes, "written_files", lambda: {"js/gone.js": tmp_path / "gone.js"})
+
+    assert (await robot.http.get("/web/js/gone.js")).status_code == 404
 
 
 async def test_files_of_another_version_are_not_there(robot: HttpRobot) -> None:
