@@ -3,8 +3,8 @@
 Merging is exact for minimum, maximum, count, worst error and the last value, in any order and
 however often: a spike of one reading is in every tier.
 
-The columns are arrays of the standard library. A robot at rest has a history, too, and numpy alone
-would take it 13 MB.
+The columns are arrays of the standard library. A robot at rest has a history, too, and does
+without numpy (decision 64).
 """
 
 from array import array
@@ -107,10 +107,10 @@ class Rows:
         """
         # By time also within a bucket: after the clock was set back, the last ones to arrive are
         # not the last ones.
-        if not (_is_rising(buckets) and _is_rising(self.last)):
-            rows = self._sorted([*zip(buckets, self.last, strict=True)])
-            return rows.merged_runs(sorted(buckets))
-        return self.merged_runs(buckets)
+        if _is_rising(buckets) and _is_rising(self.last):
+            return _with_runs_merged(self, buckets)
+        rows = self._sorted([*zip(buckets, self.last, strict=True)])
+        return _with_runs_merged(rows, sorted(buckets))
 
     def _sorted(self, keys: Sequence[Instant | tuple[int, Instant]]) -> "Rows":
         order = sorted(range(len(self)), key=keys.__getitem__)
@@ -120,31 +120,6 @@ class Rows:
         """Return the rows that are picked from each column."""
         return Rows(*(array(column.typecode, picked(column)) for column in self.columns()))
 
-    def merged_runs(self, buckets: Sequence[int]) -> "Rows":
-        """Return one row for each run of rows in the same bucket.
-
-        Args:
-            buckets: That of each row; within it, the rows are in the order of time.
-        """
-        lengths = [len([*run]) for _, run in groupby(buckets)]
-        if len(lengths) == len(self):
-            return self
-        spans = [slice(*ends) for ends in pairwise(accumulate(lengths, initial=0))]
-        low = array(VALUES, [min(self.low[span]) for span in spans])
-        high = array(VALUES, [max(self.high[span]) for span in spans])
-        means = [_mean(self.mean[span], self.count[span]) for span in spans]
-        return Rows(
-            array(TIMES, [min(self.first[span]) for span in spans]),
-            array(TIMES, [max(self.last[span]) for span in spans]),
-            low,
-            high,
-            # By rounding, a mean may lie beside all that it is the mean of.
-            array(VALUES, map(max, low, map(min, high, means))),
-            array(VALUES, [self.final[span.stop - 1] for span in spans]),
-            array(COUNTS, [sum(self.count[span]) for span in spans]),
-            array(RANKS, [max(self.error[span]) for span in spans]),
-        )
-
 
 RowsBySignal: TypeAlias = Mapping[int, Rows]
 """The rows of several signals, at least one of each, by the number of the signal."""
@@ -153,6 +128,28 @@ RowsBySignal: TypeAlias = Mapping[int, Rows]
 def row_count(rows: RowsBySignal) -> int:
     """Return how many rows there are of all signals."""
     return sum(map(len, rows.values()))
+
+
+def _with_runs_merged(rows: Rows, buckets: Sequence[int]) -> Rows:
+    """Return one row for each run of rows in the same bucket, within which they are by time."""
+    lengths = [len([*run]) for _, run in groupby(buckets)]
+    if len(lengths) == len(rows):
+        return rows
+    spans = [slice(*ends) for ends in pairwise(accumulate(lengths, initial=0))]
+    low = array(VALUES, [min(rows.low[span]) for span in spans])
+    high = array(VALUES, [max(rows.high[span]) for span in spans])
+    means = [_mean(rows.mean[span], rows.count[span]) for span in spans]
+    return Rows(
+        array(TIMES, [min(rows.first[span]) for span in spans]),
+        array(TIMES, [max(rows.last[span]) for span in spans]),
+        low,
+        high,
+        # By rounding, a mean may lie beside all that it is the mean of.
+        array(VALUES, map(max, low, map(min, high, means))),
+        array(VALUES, [rows.final[span.stop - 1] for span in spans]),
+        array(COUNTS, [sum(rows.count[span]) for span in spans]),
+        array(RANKS, [max(rows.error[span]) for span in spans]),
+    )
 
 
 def _joined(parts: "Sequence[array[Any]]") -> "array[Any]":
